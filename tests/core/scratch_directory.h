@@ -67,7 +67,7 @@ class SmallDisk {
   public:
     SmallDisk(const std::string& directory, std::size_t bytes) : directory_(directory) {
         const std::string size = "size=" + std::to_string(bytes);
-        mounted_ = (unshare(CLONE_NEWNS) == 0 || unshare(CLONE_NEWUSER | CLONE_NEWNS) == 0) &&
+        mounted_ = unshare(CLONE_NEWNS) == 0 &&
                    mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
                    mount("tmpfs", directory.c_str(), "tmpfs", 0, size.c_str()) == 0;
         if (mounted_) return;
