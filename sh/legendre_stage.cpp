@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: Apache-2.0
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sh/legendre_stage.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "sh/legendre_stage.h"
+
+#ifndef AIRLIGHT_SH_LEGENDRE_BLOCK
+#define AIRLIGHT_SH_LEGENDRE_BLOCK
+namespace airlight {
+namespace {
+
+constexpr std::size_t kBlock = 16;      // bands generated at a time
+constexpr std::size_t kRowPadding = 8;  // the widest vector in use, in doubles
+constexpr double kInverseStep = 0x1p-512, kTooLarge = 0x1p256;
+constexpr double kNever = -1e9;  // exponent of a padding row
+
+// One m: rows with their recurrence state, and where block i of the bands goes.
+struct Block {
+    const double* versine;  // 1 - cos theta
+    double* value;          // P_{l-1}, mantissas
+    double* step;           // P_{l-1} - P_{l-2}, mantissas
+    double* exponent;       // k of the factor 2^(512 k), per row: 0 is in range, below 0 negligible
+    const double* recurrence;  // (bands, 3): a, b, a - b - 1
+    double* functions;         // (kBlock, rows)
+    std::size_t rows;
+};
+
+}  // namespace
+}  // namespace airlight
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace airlight {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::CappedTag<double, kRowPadding>;
+using Vec = hn::Vec<Tag>;
+
+// Registers decide how much of a product stays in them.
+#if HWY_TARGET <= HWY_AVX3
+constexpr int kBandTile = 4, kRowTile = 4;
+#else
+constexpr int kBandTile = 2, kRowTile = 2;
+#endif
+
+template <int kVectors, bool kStore>
+HWY_INLINE void advance(const Block& b, std::size_t row) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    Vec versine[kVectors], value[kVectors], step[kVectors];
+    for (int v = 0; v < kVectors; ++v) {
+        versine[v] = hn::Load(d, b.versine + row + v * lanes);
+        value[v] = hn::Load(d, b.value + row + v * lanes);
+        step[v] = hn::Load(d, b.step + row + v * lanes);
+    }
+    for (std::size_t i = 0; i < kBlock; ++i) {
+        const Vec a_l = hn::Set(d, b.recurrence[3 * i]);
+        const Vec b_l = hn::Set(d, b.recurrence[3 * i + 1]);
+        const Vec e_l = hn::Set(d, b.recurrence[3 * i + 2]);
+        for (int v = 0; v < kVectors; ++v) {
+            const Vec w = hn::NegMulAdd(a_l, versine[v], e_l);
+            step[v] = hn::MulAdd(b_l, step[v], hn::Mul(w, value[v]));
+            value[v] = hn::Add(value[v], step[v]);
+            if (kStore) hn::Store(value[v], d, b.functions + i * b.rows + row + v * lanes);
+        }
+    }
+    for (int v = 0; v < kVectors; ++v) {
+        hn::Store(value[v], d, b.value + row + v * lanes);
+        hn::Store(step[v], d, b.step + row + v * lanes);
+    }
+}
+
+// Generates kBlock bands; returns the number of rows (whole vectors) that hold usable values.
+// `in_range` rows at the front need no scaling any more; it grows towards the pole.
+HWY_ATTR std::size_t generate(const Block& b, std::size_t* in_range) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    std::size_t row = 0;
+    for (; row + 4 * lanes <= *in_range; row += 4 * lanes) advance<4, true>(b, row);
+    for (; row < *in_range; row += lanes) advance<1, true>(b, row);
+
+    std::size_t usable = *in_range;
+    const Vec zero = hn::Zero(d);
+    for (; row < b.rows; row += lanes) {
+        const Vec exponent = hn::Load(d, b.exponent + row);
+        const auto tiny = hn::Lt(exponent, zero);
+        if (hn::AllTrue(d, tiny)) {
+            advance<1, false>(b, row);
+        } else {
+            advance<1, true>(b, row);
+            for (std::size_t i = 0; i < kBlock; ++i) {
+                double* out = b.functions + i * b.rows + row;
+                hn::Store(hn::IfThenZeroElse(tiny, hn::Load(d, out)), d, out);
+            }
+            // Rows between two usable vectors must hold zeros, not the last block's values.
+            for (std::size_t gap = usable; gap < row; gap += lanes) {
+                for (std::size_t i = 0; i < kBlock; ++i) {
+                    hn::Store(zero, d, b.functions + i * b.rows + gap);
+                }
+            }
+            usable = row + lanes;
+        }
+        const Vec value = hn::Load(d, b.value + row);
+        const Vec step = hn::Load(d, b.step + row);
+        const Vec size = hn::Max(hn::Abs(value), hn::Abs(step));
+        const auto grown = hn::And(tiny, hn::Gt(size, hn::Set(d, kTooLarge)));
+        const Vec factor = hn::IfThenElse(grown, hn::Set(d, kInverseStep), hn::Set(d, 1.0));
+        hn::Store(hn::Mul(value, factor), d, b.value + row);
+        hn::Store(hn::Mul(step, factor), d, b.step + row);
+        const Vec one = hn::IfThenElseZero(grown, hn::Set(d, 1.0));
+        hn::Store(hn::Add(exponent, one), d, b.exponent + row);
+        if (row == *in_range && hn::AllTrue(d, hn::Ge(hn::Add(exponent, one), zero))) {
+            *in_range = row + lanes;
+        }
+    }
+    return usable;
+}
+
+// coefficients[(first + 2 t) * stride + c] = sum over rows of functions * folded, t < kBandTile.
+template <int kComponents>
+HWY_ATTR void analyze_tile(const double* functions, std::size_t rows, std::size_t usable,
+                           const double* folded, double* coefficients, std::size_t stride) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    Vec sum[kBandTile][kComponents];
+    for (int t = 0; t < kBandTile; ++t) {
+        for (int c = 0; c < kComponents; ++c) sum[t][c] = hn::Zero(d);
+    }
+    for (std::size_t row = 0; row < usable; row += lanes) {
+        Vec p[kBandTile];
+        for (int t = 0; t < kBandTile; ++t) p[t] = hn::Load(d, functions + 2 * t * rows + row);
+        for (int c = 0; c < kComponents; ++c) {
+            const Vec f = hn::Load(d, folded + c * rows + row);
+            for (int t = 0; t < kBandTile; ++t) sum[t][c] = hn::MulAdd(p[t], f, sum[t][c]);
+        }
+    }
+    for (int t = 0; t < kBandTile; ++t) {
+        for (int c = 0; c < kComponents; ++c) {
+            coefficients[2 * t * stride + c] = hn::GetLane(hn::SumOfLanes(d, sum[t][c]));
+        }
+    }
+}
+
+template <int kComponents>
+HWY_ATTR void analyze_block(const Block& b, std::size_t usable, std::size_t stride,
+                            const double* even, const double* odd, double* coefficients) {
+    for (std::size_t i = 0; i < kBlock; i += 2 * kBandTile) {
+        analyze_tile<kComponents>(b.functions + i * b.rows, b.rows, usable, even,
+                                  coefficients + i * stride, stride);
+        analyze_tile<kComponents>(b.functions + (i + 1) * b.rows, b.rows, usable, odd,
+                                  coefficients + (i + 1) * stride, stride);
+    }
+}
+
+// folded += functions^T coefficients for the kBlock / 2 bands of one parity.
+template <int kComponents, int kVectors>
+HWY_INLINE void synthesize_tile(const double* functions, std::size_t rows, std::size_t row,
+                                double* folded, const double* coefficients, std::size_t stride) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    Vec sum[kVectors][kComponents];
+    for (int v = 0; v < kVectors; ++v) {
+        for (int c = 0; c < kComponents; ++c) {
+            sum[v][c] = hn::Load(d, folded + c * rows + row + v * lanes);
+        }
+    }
+    for (std::size_t i = 0; i < kBlock; i += 2) {
+        Vec p[kVectors];
+        for (int v = 0; v < kVectors; ++v)
+            p[v] = hn::Load(d, functions + i * rows + row + v * lanes);
+        for (int c = 0; c < kComponents; ++c) {
+            const Vec a = hn::Set(d, coefficients[i * stride + c]);
+            for (int v = 0; v < kVectors; ++v) sum[v][c] = hn::MulAdd(p[v], a, sum[v][c]);
+        }
+    }
+    for (int v = 0; v < kVectors; ++v) {
+        for (int c = 0; c < kComponents; ++c) {
+            hn::Store(sum[v][c], d, folded + c * rows + row + v * lanes);
+        }
+    }
+}
+
+template <int kComponents>
+HWY_ATTR void synthesize_block(const Block& b, std::size_t usable, std::size_t stride,
+                               const double* coefficients, double* even, double* odd) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    for (int parity = 0; parity < 2; ++parity) {
+        const double* functions = b.functions + parity * b.rows;
+        const double* bands = coefficients + parity * stride;
+        double* folded = parity == 0 ? even : odd;
+        std::size_t row = 0;
+        for (; row + kRowTile * lanes <= usable; row += kRowTile * lanes) {
+            synthesize_tile<kComponents, kRowTile>(functions, b.rows, row, folded, bands, stride);
+        }
+        for (; row < usable; row += lanes) {
+            synthesize_tile<kComponents, 1>(functions, b.rows, row, folded, bands, stride);
+        }
+    }
+}
+
+template <int kComponents>
+void dispatch_analysis(const Block& b, std::size_t usable, int components, int first,
+                       const double* even, const double* odd, double* coefficients) {
+    analyze_block<kComponents>(b, usable, components, even + first * b.rows, odd + first * b.rows,
+                               coefficients + first);
+}
+
+// Runs over all blocks of bands of one m.
+HWY_ATTR void run_analysis(Block b, std::size_t bands, int components, const double* even,
+                           const double* odd, double* coefficients) {
+    std::size_t in_range = 0;
+    for (std::size_t l = 0; l < bands; l += kBlock, b.recurrence += 3 * kBlock) {
+        const std::size_t usable = generate(b, &in_range);
+        double* out = coefficients + l * components;
+        int c = 0;
+        for (; c + 6 <= components; c += 6) {
+            dispatch_analysis<6>(b, usable, components, c, even, odd, out);
+        }
+        if (c + 4 <= components) {
+            dispatch_analysis<4>(b, usable, components, c, even, odd, out);
+            c += 4;
+        }
+        if (c + 2 <= components) dispatch_analysis<2>(b, usable, components, c, even, odd, out);
+    }
+}
+
+template <int kComponents>
+void dispatch_synthesis(const Block& b, std::size_t usable, int components, int first,
+                        const double* coefficients, double* even, double* odd) {
+    synthesize_block<kComponents>(b, usable, components, coefficients + first,
+                                  even + first * b.rows, odd + first * b.rows);
+}
+
+HWY_ATTR void run_synthesis(Block b, std::size_t bands, int components, const double* coefficients,
+                            double* even, double* odd) {
+    std::size_t in_range = 0;
+    for (std::size_t l = 0; l < bands; l += kBlock, b.recurrence += 3 * kBlock) {
+        const std::size_t usable = generate(b, &in_range);
+        const double* in = coefficients + l * components;
+        int c = 0;
+        for (; c + 6 <= components; c += 6) {
+            dispatch_synthesis<6>(b, usable, components, c, in, even, odd);
+        }
+        if (c + 4 <= components) {
+            dispatch_synthesis<4>(b, usable, components, c, in, even, odd);
+            c += 4;
+        }
+        if (c + 2 <= components) dispatch_synthesis<2>(b, usable, components, c, in, even, odd);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace airlight
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace airlight {
+
+HWY_EXPORT(run_analysis);
+HWY_EXPORT(run_synthesis);
+
+LegendreStage::LegendreStage(const std::vector<double>& colatitude, int lmax)
+    : lmax_(lmax), rows_(colatitude.size()) {
+    assert(lmax >= 0);
+    const std::size_t padded = (rows_ + kRowPadding - 1) / kRowPadding * kRowPadding;
+    versine_.assign(padded, 1.0);
+    log2_sin_.resize(rows_);
+    for (std::size_t r = 0; r < rows_; ++r) {
+        const long double theta = colatitude[r];
+        const long double x = std::cos(theta);
+        const long double half = std::sin(theta / 2);
+        versine_[r] = static_cast<double>(2 * half * half);
+        // log sin theta without cancellation on either side of 45 degrees.
+        const long double log_sin =
+            x < 0.7L ? 0.5L * std::log1p(-x * x) : std::log(std::sin(theta));
+        log2_sin_[r] = log_sin * 1.44269504088896340735992468100189214L;
+    }
+    seed_.resize(static_cast<std::size_t>(lmax) + 1);
+    long double squared = 0.0795774715459476678844418816862571810L;  // 1 / (4 pi)
+    for (int m = 0; m <= lmax; ++m) {
+        if (m > 0) squared *= (2.0L * m + 1) / (2.0L * m);
+        seed_[m] = static_cast<double>(std::sqrt(m > 0 ? 2 * squared : squared));
+    }
+}
+
+// The recurrence P_l = a x P_{l-1} - b P_{l-2} with
+//   a^2 = (4 l^2 - 1) / (l^2 - m^2),  b^2 = (2l+1) ((l-1)^2 - m^2) / ((2l-3) (l^2 - m^2))
+// runs on the steps P_l - P_{l-1} = b (P_{l-1} - P_{l-2}) + (e - a (1 - x)) P_{l-1}, e = a - b - 1,
+// since near a pole the rounding of x itself would cost l^2 eps. e is about 1/l^2: long double
+// keeps its digits.
+void LegendreStage::prepare(int m, Workspace& work) const {
+    assert(m >= 0 && m <= lmax_);
+    const std::size_t bands = static_cast<std::size_t>(lmax_ - m) + 1;
+    work.m = m;
+    work.recurrence.assign(3 * padded_bands(m), 0.0);
+    work.recurrence[1] = 1.0;  // the first step, from 0, gives the seed itself
+    const long double mm = static_cast<long double>(m) * m;
+    for (std::size_t i = 1; i < bands; ++i) {
+        const long double l = static_cast<long double>(m) + static_cast<long double>(i);
+        const long double scale = (2 * l + 1) / (l * l - mm);
+        const long double a = std::sqrt(scale * (2 * l - 1));
+        const long double b =
+            i == 1 ? 0.0L : std::sqrt(scale * ((l - 1) * (l - 1) - mm) / (2 * l - 3));
+        work.recurrence[3 * i] = static_cast<double>(a);
+        work.recurrence[3 * i + 1] = static_cast<double>(b);
+        work.recurrence[3 * i + 2] = static_cast<double>(a - b - 1);
+    }
+    const std::size_t padded = padded_rows();
+    work.seed.assign(padded, 0.0);
+    work.seed_exponent.assign(padded, kNever);
+    for (std::size_t r = 0; r < rows_; ++r) {
+        const long double exponent = m * log2_sin_[r];
+        // Whole steps of 512 leave a mantissa in [2^-256, 2^256].
+        const double steps =
+            exponent < -256 ? -std::ceil((static_cast<double>(-exponent) - 256) / 512) : 0.0;
+        work.seed_exponent[r] = steps;
+        const double rest = static_cast<double>(exponent - 512 * static_cast<long double>(steps));
+        const double fraction = static_cast<double>(
+            exponent - 512 * static_cast<long double>(steps) - std::floor(rest));
+        work.seed[r] =
+            std::ldexp(std::exp2(fraction) * seed_[m], static_cast<int>(std::floor(rest)));
+    }
+    work.value.resize(padded);
+    work.functions.resize(kBlock * padded);
+}
+
+namespace {
+
+// Rewinds the recurrence of the prepared order to its first band.
+Block rewind(const double* versine, std::size_t rows, LegendreStage::Workspace& work) {
+    std::fill(work.value.begin(), work.value.end(), 0.0);
+    work.step = work.seed;
+    work.exponent = work.seed_exponent;
+    return {versine,
+            work.value.data(),
+            work.step.data(),
+            work.exponent.data(),
+            work.recurrence.data(),
+            work.functions.data(),
+            rows};
+}
+
+}  // namespace
+
+void LegendreStage::analyze(int components, const double* even, const double* odd,
+                            double* coefficients, Workspace& work) const {
+    assert(components > 0 && components % 2 == 0);
+    const std::size_t bands = static_cast<std::size_t>(lmax_ - work.m) + 1;
+    const Block block = rewind(versine_.data(), padded_rows(), work);
+    HWY_DYNAMIC_DISPATCH(run_analysis)(block, bands, components, even, odd, coefficients);
+}
+
+void LegendreStage::synthesize(int components, double* coefficients, double* even, double* odd,
+                               Workspace& work) const {
+    assert(components > 0 && components % 2 == 0);
+    const std::size_t bands = static_cast<std::size_t>(lmax_ - work.m) + 1;
+    std::fill(coefficients + bands * components, coefficients + padded_bands(work.m) * components,
+              0.0);
+    std::fill(even, even + components * padded_rows(), 0.0);
+    std::fill(odd, odd + components * padded_rows(), 0.0);
+    const Block block = rewind(versine_.data(), padded_rows(), work);
+    HWY_DYNAMIC_DISPATCH(run_synthesis)(block, bands, components, coefficients, even, odd);
+}
+
+std::size_t LegendreStage::padded_bands(int m) const {
+    const std::size_t bands = static_cast<std::size_t>(lmax_ - m) + 1;
+    return (bands + kBlock - 1) / kBlock * kBlock;
+}
+
+}  // namespace airlight
+#endif
