@@ -13,7 +13,8 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kLanes = 8;
 
-using Lanes = std::array<double, kLanes>;
+template <class Real>
+using Lanes = std::array<Real, kLanes>;
 
 PolarRule empty_rule(int n) {
     const auto size = static_cast<std::size_t>(n);
@@ -30,24 +31,51 @@ double bessel_zero_guess(int k) {
 }
 
 double gauss_angle_guess(int n, int k) {
+    // The middle node of an odd rule is known; Newton leaves it where it is.
+    if (2 * k - 1 == n) return kPi / 2;
     const double kappa = n + 0.5;
     const double a = bessel_zero_guess(k) / kappa;
     return a + (a / std::tan(a) - 1) / (8 * a * kappa * kappa);
 }
 
-// P_n and P_n - P_{n-1} at cos t, delta = 1 - cos t = 2 sin^2(t/2), in the difference form whose
-// rounding does not grow like n^2 beside the pole as that of the three-term recurrence does.
-void legendre_lanes(int n, const std::vector<double>& ratio, const Lanes& delta, Lanes& p,
-                    Lanes& difference) {
+template <class Real>
+struct NewtonStep {
+    Lanes<Real> step;   // -P_n / P_n'
+    Lanes<Real> slope;  // P_n' = d P_n(cos t) / dt
+};
+
+// P_n at cos t from delta = 1 - cos t = 2 sin^2(t/2), in the difference form whose rounding does
+// not grow like n^2 beside the pole as that of the three-term recurrence does.
+template <class Real>
+NewtonStep<Real> newton_step(const std::vector<Real>& ratio, const Lanes<double>& angle) {
+    Lanes<Real> delta, p, difference;
     p.fill(1);
     difference.fill(0);
-    for (int l = 0; l < n; ++l) {
-        const double r = ratio[static_cast<std::size_t>(l)];
+    for (int i = 0; i < kLanes; ++i) {
+        const Real s = std::sin(Real(angle[i]) / 2);
+        delta[i] = 2 * s * s;
+    }
+    for (const Real r : ratio) {
         for (int i = 0; i < kLanes; ++i) {
             difference[i] = r * difference[i] - (1 + r) * delta[i] * p[i];
             p[i] += difference[i];
         }
     }
+    NewtonStep<Real> result;
+    for (int i = 0; i < kLanes; ++i) {
+        const Real n = static_cast<Real>(ratio.size());
+        result.slope[i] = n * (difference[i] - delta[i] * p[i]) / std::sin(Real(angle[i]));
+        result.step[i] = -p[i] / result.slope[i];
+    }
+    return result;
+}
+
+// l / (l + 1) for l = 0 ... n - 1.
+template <class Real>
+std::vector<Real> recurrence_ratios(int n) {
+    std::vector<Real> ratio(static_cast<std::size_t>(n));
+    for (int l = 0; l < n; ++l) ratio[static_cast<std::size_t>(l)] = l / (l + Real(1));
+    return ratio;
 }
 
 }  // namespace
@@ -55,51 +83,41 @@ void legendre_lanes(int n, const std::vector<double>& ratio, const Lanes& delta,
 PolarRule gauss_legendre(int n) {
     assert(n >= 1);
     PolarRule rule = empty_rule(n);
-    std::vector<double> ratio(static_cast<std::size_t>(n));  // l / (l + 1)
-    for (int l = 0; l < n; ++l) ratio[static_cast<std::size_t>(l)] = l / (l + 1.0);
+    const std::vector<double> ratio = recurrence_ratios<double>(n);
+    const std::vector<long double> fine_ratio = recurrence_ratios<long double>(n);
 
     const int half = (n + 1) / 2;
     for (int first = 0; first < half; first += kLanes) {
-        Lanes angle, delta, p, difference, step, slope;
+        Lanes<double> angle;
         for (int i = 0; i < kLanes; ++i) {
-            const int k = std::min(first + i, half - 1) + 1;
-            // The middle node of an odd rule is known; Newton leaves it where it is.
-            angle[i] = 2 * k - 1 == n ? kPi / 2 : gauss_angle_guess(n, k);
+            angle[i] = gauss_angle_guess(n, std::min(first + i, half - 1) + 1);
         }
-        for (int iteration = 0; iteration < 8; ++iteration) {
+        for (bool close = false; !close;) {
+            const NewtonStep<double> newton = newton_step(ratio, angle);
+            close = true;
             for (int i = 0; i < kLanes; ++i) {
-                const double s = std::sin(angle[i] / 2);
-                delta[i] = 2 * s * s;
+                angle[i] += newton.step[i];
+                // What is left is under cot(t)/2 times the square of the step: for the last one.
+                close = close && std::abs(newton.step[i]) < 1e-6 * angle[i];
             }
-            legendre_lanes(n, ratio, delta, p, difference);
-            bool close = true;
-            for (int i = 0; i < kLanes; ++i) {
-                slope[i] = n * (difference[i] - delta[i] * p[i]) / std::sin(angle[i]);
-                step[i] = -p[i] / slope[i];
-                // The next step would be cot(t)/2 times this one squared: nothing.
-                close = close && std::abs(step[i]) < 1e-9 * angle[i];
-            }
-            if (close) break;
-            for (int i = 0; i < kLanes; ++i) angle[i] += step[i];
         }
+        // The last step and the slope in extended precision, where the platform has it, as the
+        // rounding of n recurrence steps would cost the weights up to 1e-14.
+        const NewtonStep<long double> last = newton_step(fine_ratio, angle);
         for (int i = 0; i < kLanes && first + i < half; ++i) {
             const auto low = static_cast<std::size_t>(first + i);
             const auto high = static_cast<std::size_t>(n - 1) - low;
-            // cos and sin of angle + step, without rounding the sum first; so is the weight, whose
-            // slope changes by the factor 1 - cot(t) step.
+            // Every result at angle + step without rounding that sum first; P'' = -cot(t) P' there.
+            const auto t = static_cast<double>(last.step[i]);
             const double c = std::cos(angle[i]), s = std::sin(angle[i]);
-            const double middle = low == high ? 0 : 1;
-            const double t = step[i];
+            const double slope = static_cast<double>(last.slope[i]) * (1 - c / s * t);
             rule.angle[low] = angle[i] + t;
-            rule.cosine[low] = middle * (c - t * (s + t * c / 2));
-            rule.sine[low] = s + t * (c - t * s / 2);
-            const double end_slope = slope[i] * (1 - c / s * t);
-            rule.weight[low] = 2 / (end_slope * end_slope);
-            if (low == high) continue;
-            rule.angle[high] = kPi - rule.angle[low];
+            rule.cosine[low] = c - t * s;
             rule.cosine[high] = -rule.cosine[low];
-            rule.sine[high] = rule.sine[low];
-            rule.weight[high] = rule.weight[low];
+            if (low == high) rule.cosine[low] = 0;
+            rule.sine[low] = rule.sine[high] = s + t * c;
+            rule.weight[low] = rule.weight[high] = 2 / (slope * slope);
+            if (low != high) rule.angle[high] = kPi - rule.angle[low];
         }
     }
     return rule;
@@ -130,8 +148,9 @@ PolarRule fejer_rows(int rows) {
         const double weight = 2.0 / rows * (1 / (2.0 * terms + 1) + 4 * sum);
         rule.angle[low] = angle;
         rule.angle[high] = (rows - 1 - j + 0.5) * kPi / rows;
-        rule.cosine[low] = low == high ? 0 : std::cos(angle);
+        rule.cosine[low] = std::cos(angle);
         rule.cosine[high] = -rule.cosine[low];
+        if (low == high) rule.cosine[low] = 0;
         rule.sine[low] = rule.sine[high] = std::sin(angle);
         rule.weight[low] = rule.weight[high] = weight;
     }
