@@ -11,6 +11,7 @@
 #include <random>
 #include <system_error>
 
+#include "core/descriptor.h"
 #include "core/error.h"
 
 namespace airlight {
@@ -150,15 +151,8 @@ void AtomicFile::open_unfinished(bool unnamed) {
 }
 
 void AtomicFile::write(const void* data, std::size_t bytes) {
-    const char* position = static_cast<const char*>(data);
-    while (bytes > 0) {
-        const ssize_t written = ::write(descriptor_, position, bytes);
-        if (written < 0) {
-            if (errno == EINTR) continue;
-            throw Error(ErrorCode::io, "cannot write: " + system_message(errno), target_);
-        }
-        position += written;
-        bytes -= static_cast<std::size_t>(written);
+    if (const int error = write_all(descriptor_, data, bytes); error != 0) {
+        throw Error(ErrorCode::io, "cannot write: " + system_message(error), target_);
     }
 }
 

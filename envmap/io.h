@@ -93,10 +93,10 @@ void check_writable(const std::string& path, const WriteOptions& options);
 /// standard output. The file appears whole or not at all (core/atomic_file.h), and equal pictures
 /// and options give equal bytes.
 ///
-/// EXR keeps everything. TIFF keeps 32-bit and 16-bit floats; .pfm 32-bit floats without
-/// attributes. .hdr stores a shared exponent: each channel is off by at most 1/256 (as measured by
-/// tests/envmap/io_test.cpp) of the pixel's brightest channel, and it is refused when a pixel is
-/// negative or beyond 1.7e38.
+/// EXR keeps everything. TIFF keeps 32-bit floats, and of the attributes only texts that it has a
+/// tag for; .pfm keeps 32-bit floats alone. .hdr stores a shared exponent: each channel is off by
+/// at most 1/256 (as measured by tests/envmap/io_test.cpp) of the pixel's brightest channel, and it
+/// is refused when a pixel is negative or beyond 1.7e38.
 ///
 /// Throws Error(usage|io) as check_writable, Error(data) for non-finite pixels, for values
 /// that half cannot hold (above 65504; the message gives their number and the largest) and for
