@@ -27,7 +27,7 @@ double zonal_coefficient(int l, double lambda);
 ///
 /// P_l comes from the difference form of its recurrence, which keeps its accuracy beside both
 /// poles: the error is under 1e-15 sqrt(order) times 2 pi sum_i weight_i |values_i|.
-/// Cost 1.1 ns per node and order, one thread; the sum runs in a fixed sequence.
+/// Cost 1.4 ns per node and order, one thread; the sum runs in a fixed sequence.
 std::vector<double> zonal_eigenvalues(const PolarRule& rule, const std::vector<double>& values,
                                       int order);
 

@@ -99,7 +99,7 @@ TEST(PsfZonal, MatchesTheSampledPointSpreadFunction) {
 
 TEST(PsfZonal, OfNoThicknessObeysItsRecurrence) {
     // lambda_l = pi/4 (Gamma((l+1)/2) / Gamma(l/2+1))^2, so neighbours multiply to this.
-    const std::vector<double> lambda = psf_eigenvalues_scaled(0, 4096);
+    const std::vector<double> lambda = psf_eigenvalues_scaled(0, 16384);
     EXPECT_LT(relative_error(lambda[0], kPi * kPi / 4), kAccuracy);
     for (std::size_t l = 0; l + 1 < lambda.size(); ++l) {
         const double root = kPi / (2 * (static_cast<double>(l) + 1));
