@@ -46,9 +46,9 @@ using Vec = hn::Vec<Tag>;
 
 // Registers decide how much of a product stays in them.
 #if HWY_TARGET <= HWY_AVX3
-constexpr int kBandTile = 4, kRowTile = 4;
+constexpr int kBandTile = 4, kRowTile = 4, kStreams = 8;
 #else
-constexpr int kBandTile = 2, kRowTile = 2;
+constexpr int kBandTile = 2, kRowTile = 2, kStreams = 4;
 #endif
 
 template <int kVectors, bool kStore>
@@ -67,7 +67,7 @@ HWY_INLINE void advance(const Block& b, std::size_t row) {
         const Vec e_l = hn::Set(d, b.recurrence[3 * i + 2]);
         for (int v = 0; v < kVectors; ++v) {
             const Vec w = hn::NegMulAdd(a_l, versine[v], e_l);
-            step[v] = hn::MulAdd(b_l, step[v], hn::Mul(w, value[v]));
+            step[v] = hn::MulAdd(w, value[v], hn::Mul(b_l, step[v]));
             value[v] = hn::Add(value[v], step[v]);
             if (kStore) hn::Store(value[v], d, b.functions + i * b.rows + row + v * lanes);
         }
@@ -78,47 +78,68 @@ HWY_INLINE void advance(const Block& b, std::size_t row) {
     }
 }
 
+HWY_INLINE bool all_tiny(const Block& b, std::size_t row, int vectors) {
+    const Tag d;
+    Vec largest = hn::Load(d, b.exponent + row);
+    for (int v = 1; v < vectors; ++v) {
+        largest = hn::Max(largest, hn::Load(d, b.exponent + row + v * hn::Lanes(d)));
+    }
+    return hn::AllTrue(d, hn::Lt(largest, hn::Zero(d)));
+}
+
+// Moves grown mantissas of negligible rows up one step; returns whether all rows are in range.
+HWY_INLINE bool rescale(const Block& b, std::size_t row) {
+    const Tag d;
+    const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0);
+    const Vec exponent = hn::Load(d, b.exponent + row);
+    const Vec value = hn::Load(d, b.value + row);
+    const Vec step = hn::Load(d, b.step + row);
+    const Vec size = hn::Max(hn::Abs(value), hn::Abs(step));
+    const auto grown = hn::And(hn::Lt(exponent, zero), hn::Gt(size, hn::Set(d, kTooLarge)));
+    const Vec factor = hn::IfThenElse(grown, hn::Set(d, kInverseStep), one);
+    const Vec raised = hn::Add(exponent, hn::IfThenElseZero(grown, one));
+    hn::Store(hn::Mul(value, factor), d, b.value + row);
+    hn::Store(hn::Mul(step, factor), d, b.step + row);
+    hn::Store(raised, d, b.exponent + row);
+    return hn::AllTrue(d, hn::Ge(raised, zero));
+}
+
 // Generates kBlock bands; returns the number of rows (whole vectors) that hold usable values.
 // `in_range` rows at the front need no scaling any more; it grows towards the pole.
 HWY_ATTR std::size_t generate(const Block& b, std::size_t* in_range) {
     const Tag d;
     const std::size_t lanes = hn::Lanes(d);
     std::size_t row = 0;
-    for (; row + 4 * lanes <= *in_range; row += 4 * lanes) advance<4, true>(b, row);
+    // Several recurrences side by side hide the latency of each.
+    for (; row + kStreams * lanes <= *in_range; row += kStreams * lanes) {
+        advance<kStreams, true>(b, row);
+    }
     for (; row < *in_range; row += lanes) advance<1, true>(b, row);
 
     std::size_t usable = *in_range;
     const Vec zero = hn::Zero(d);
-    for (; row < b.rows; row += lanes) {
-        const Vec exponent = hn::Load(d, b.exponent + row);
-        const auto tiny = hn::Lt(exponent, zero);
-        if (hn::AllTrue(d, tiny)) {
+    while (row < b.rows) {
+        const bool several = row + kStreams * lanes <= b.rows && all_tiny(b, row, kStreams);
+        const std::size_t end = row + (several ? kStreams * lanes : lanes);
+        if (several) {
+            advance<kStreams, false>(b, row);
+        } else if (all_tiny(b, row, 1)) {
             advance<1, false>(b, row);
         } else {
             advance<1, true>(b, row);
+            const auto tiny = hn::Lt(hn::Load(d, b.exponent + row), zero);
             for (std::size_t i = 0; i < kBlock; ++i) {
                 double* out = b.functions + i * b.rows + row;
                 hn::Store(hn::IfThenZeroElse(tiny, hn::Load(d, out)), d, out);
-            }
-            // Rows between two usable vectors must hold zeros, not the last block's values.
-            for (std::size_t gap = usable; gap < row; gap += lanes) {
-                for (std::size_t i = 0; i < kBlock; ++i) {
+                // Rows between two usable vectors hold zeros, not the last block's values.
+                for (std::size_t gap = usable; gap < row; gap += lanes) {
                     hn::Store(zero, d, b.functions + i * b.rows + gap);
                 }
             }
-            usable = row + lanes;
+            usable = end;
         }
-        const Vec value = hn::Load(d, b.value + row);
-        const Vec step = hn::Load(d, b.step + row);
-        const Vec size = hn::Max(hn::Abs(value), hn::Abs(step));
-        const auto grown = hn::And(tiny, hn::Gt(size, hn::Set(d, kTooLarge)));
-        const Vec factor = hn::IfThenElse(grown, hn::Set(d, kInverseStep), hn::Set(d, 1.0));
-        hn::Store(hn::Mul(value, factor), d, b.value + row);
-        hn::Store(hn::Mul(step, factor), d, b.step + row);
-        const Vec one = hn::IfThenElseZero(grown, hn::Set(d, 1.0));
-        hn::Store(hn::Add(exponent, one), d, b.exponent + row);
-        if (row == *in_range && hn::AllTrue(d, hn::Ge(hn::Add(exponent, one), zero))) {
-            *in_range = row + lanes;
+        for (; row < end; row += lanes) {
+            if (rescale(b, row) && row == *in_range) *in_range = row + lanes;
         }
     }
     return usable;

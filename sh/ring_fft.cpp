@@ -9,7 +9,7 @@
 namespace airlight {
 namespace {
 
-using Complex = RingFft::Complex;
+using Complex = ComplexFft::Complex;
 
 constexpr std::size_t kLargestDirectPrime = 61;
 constexpr double kPi = 3.14159265358979323846;
@@ -25,7 +25,6 @@ std::size_t largest_prime_factor(std::size_t n) {
     return std::max(largest, n);
 }
 
-// KISS FFT computes its twiddles from a running index in one multiplication, which is accurate.
 struct Kiss {
     explicit Kiss(std::size_t n) : forward(n, false), inverse(n, true) {}
     kissfft<double> forward, inverse;
@@ -33,103 +32,128 @@ struct Kiss {
 
 }  // namespace
 
-struct RingFft::Impl {
-    std::unique_ptr<Kiss> direct;
-    // Bluestein: a chirp of length n, convolved with the spectrum of the conjugate chirp.
-    std::size_t padded = 0;
-    std::unique_ptr<Kiss> convolution;
+struct ComplexFft::Impl {
+    explicit Impl(std::size_t length_in) : length(length_in) {
+        if (largest_prime_factor(length) <= kLargestDirectPrime) {
+            kiss = std::make_unique<Kiss>(length);
+            return;
+        }
+        padded = 1;
+        while (padded < 2 * length - 1) padded *= 2;
+        kiss = std::make_unique<Kiss>(padded);
+        chirp.resize(length);
+        std::vector<Complex> wrapped(padded);
+        for (std::size_t k = 0; k < length; ++k) {
+            // k^2 modulo 2n keeps the angle small, hence accurate.
+            const double angle = kPi * static_cast<double>(k * k % (2 * length)) / length;
+            chirp[k] = {std::cos(angle), -std::sin(angle)};
+            wrapped[k] = std::conj(chirp[k]);
+            if (k > 0) wrapped[padded - k] = wrapped[k];
+        }
+        chirp_spectrum.resize(padded);
+        kiss->forward.transform(wrapped.data(), chirp_spectrum.data());
+        for (Complex& value : chirp_spectrum) value /= static_cast<double>(padded);
+    }
+
+    std::size_t length;
+    std::size_t padded = 0;  // length of the chirp convolution, 0 for a direct transform
+    std::unique_ptr<Kiss> kiss;
     std::vector<Complex> chirp, chirp_spectrum;
 };
 
-RingFft::RingFft(std::size_t length) : length_(length), impl_(std::make_unique<Impl>()) {
+ComplexFft::ComplexFft(std::size_t length) : impl_(std::make_unique<Impl>(length)) {
     assert(length >= 1);
-    if (largest_prime_factor(length) <= kLargestDirectPrime) {
-        impl_->direct = std::make_unique<Kiss>(length);
-        return;
-    }
-    std::size_t padded = 1;
-    while (padded < 2 * length - 1) padded *= 2;
-    impl_->padded = padded;
-    impl_->convolution = std::make_unique<Kiss>(padded);
-    impl_->chirp.resize(length);
-    std::vector<Complex> wrapped(padded);
-    for (std::size_t k = 0; k < length; ++k) {
-        // k^2 modulo 2n keeps the angle small, hence accurate.
-        const double angle = kPi * static_cast<double>(k * k % (2 * length)) / length;
-        impl_->chirp[k] = {std::cos(angle), -std::sin(angle)};
-        wrapped[k] = std::conj(impl_->chirp[k]);
-        if (k > 0) wrapped[padded - k] = wrapped[k];
-    }
-    impl_->chirp_spectrum.resize(padded);
-    impl_->convolution->forward.transform(wrapped.data(), impl_->chirp_spectrum.data());
-    for (Complex& value : impl_->chirp_spectrum) value /= static_cast<double>(padded);
 }
 
-RingFft::~RingFft() = default;
-RingFft::RingFft(RingFft&&) noexcept = default;
-RingFft& RingFft::operator=(RingFft&&) noexcept = default;
+ComplexFft::~ComplexFft() = default;
+ComplexFft::ComplexFft(ComplexFft&&) noexcept = default;
+ComplexFft& ComplexFft::operator=(ComplexFft&&) noexcept = default;
 
-void RingFft::transform(const Complex* in, Complex* out, bool inverse, Workspace& work) const {
-    if (impl_->direct) {
-        (inverse ? impl_->direct->inverse : impl_->direct->forward).transform(in, out);
+std::size_t ComplexFft::scratch_size() const {
+    return 2 * impl_->padded;
+}
+
+void ComplexFft::transform(const Complex* in, Complex* out, bool inverse, Complex* scratch) const {
+    const Kiss& kiss = *impl_->kiss;
+    if (impl_->padded == 0) {
+        (inverse ? kiss.inverse : kiss.forward).transform(in, out);
         return;
     }
-    const std::size_t n = length_, padded = impl_->padded;
-    // The caller may hold its own data in the front of `work`: use what lies behind it.
-    const std::size_t base = work.size();
-    work.resize(base + 2 * padded);
-    Complex* a = work.data() + base;
-    Complex* b = a + padded;
-    for (std::size_t k = 0; k < n; ++k) {
-        a[k] = (inverse ? std::conj(in[k]) : in[k]) * impl_->chirp[k];
-    }
+    const std::size_t n = impl_->length, padded = impl_->padded;
+    const std::vector<Complex>& chirp = impl_->chirp;
+    Complex* a = scratch;
+    Complex* b = scratch + padded;
+    for (std::size_t k = 0; k < n; ++k) a[k] = (inverse ? std::conj(in[k]) : in[k]) * chirp[k];
     std::fill(a + n, a + padded, Complex());
-    impl_->convolution->forward.transform(a, b);
+    kiss.forward.transform(a, b);
     for (std::size_t k = 0; k < padded; ++k) b[k] *= impl_->chirp_spectrum[k];
-    impl_->convolution->inverse.transform(b, a);
+    kiss.inverse.transform(b, a);
     for (std::size_t k = 0; k < n; ++k) {
-        const Complex value = a[k] * impl_->chirp[k];
+        const Complex value = a[k] * chirp[k];
         out[k] = inverse ? std::conj(value) : value;
     }
-    work.resize(base);
 }
 
-void RingFft::forward(const double* a, const double* b, Complex* A, Complex* B,
-                      Workspace& work) const {
+RingFft::RingFft(std::size_t length)
+    : length_(length), fft_(length % 2 == 0 ? length / 2 : length) {
+    if (length % 2 == 1) return;
+    for (std::size_t m = 0; m <= length / 4; ++m) {
+        const double angle = 2 * kPi * static_cast<double>(m) / length;
+        twiddle_.push_back({std::cos(angle), -std::sin(angle)});
+    }
+}
+
+// Even n: z_k = a_2k + i a_2k+1 has the transform Z = E + i O of the even and odd samples, and
+// A_m = E_m + w^m O_m, w = exp(-2 pi i / n).
+void RingFft::forward(const double* a, Complex* A, Workspace& work) const {
     const std::size_t n = length_;
-    // Room behind the two buffers lets transform() extend the workspace without moving them.
-    work.reserve(2 * n + 2 * impl_->padded);
-    work.resize(2 * n);
+    work.resize(2 * n + fft_.scratch_size());
     Complex* z = work.data();
-    Complex* Z = z + n;
-    for (std::size_t k = 0; k < n; ++k) z[k] = {a[k], b[k]};
-    transform(z, Z, false, work);
-    A[0] = Z[0].real();
-    B[0] = Z[0].imag();
-    for (std::size_t m = 1; m < bins(); ++m) {
-        const Complex p = Z[m], q = Z[n - m];
-        A[m] = {0.5 * (p.real() + q.real()), 0.5 * (p.imag() - q.imag())};
-        B[m] = {0.5 * (p.imag() + q.imag()), 0.5 * (q.real() - p.real())};
+    if (n % 2 == 1) {
+        std::copy(a, a + n, z);
+        fft_.transform(z, z + n, false, z + 2 * n);
+        std::copy(z + n, z + n + bins(), A);
+        return;
+    }
+    const std::size_t half = n / 2;
+    for (std::size_t k = 0; k < half; ++k) z[k] = {a[2 * k], a[2 * k + 1]};
+    fft_.transform(z, A, false, z + n);
+    const Complex first = A[0];
+    A[0] = first.real() + first.imag();
+    A[half] = first.real() - first.imag();
+    for (std::size_t m = 1; 2 * m <= half; ++m) {
+        const Complex p = A[m], q = std::conj(A[half - m]);
+        const Complex even = 0.5 * (p + q), difference = 0.5 * (p - q);
+        const Complex odd = Complex(difference.imag(), -difference.real()) * twiddle_[m];
+        A[m] = even + odd;
+        A[half - m] = std::conj(even - odd);
     }
 }
 
-void RingFft::inverse(const Complex* A, const Complex* B, double* a, double* b,
-                      Workspace& work) const {
+void RingFft::inverse(const Complex* A, double* a, Workspace& work) const {
     const std::size_t n = length_;
-    work.reserve(2 * n + 2 * impl_->padded);
-    work.resize(2 * n);
-    Complex* Z = work.data();
-    Complex* z = Z + n;
-    Z[0] = {A[0].real(), B[0].real()};
-    for (std::size_t m = 1; m < bins(); ++m) {
-        // For even n the last pass writes the Nyquist bin twice with the same value.
-        Z[n - m] = {A[m].real() + B[m].imag(), B[m].real() - A[m].imag()};
-        Z[m] = {A[m].real() - B[m].imag(), A[m].imag() + B[m].real()};
+    work.resize(2 * n + fft_.scratch_size());
+    Complex* z = work.data();
+    if (n % 2 == 1) {
+        std::copy(A, A + bins(), z);
+        for (std::size_t m = 1; m < bins(); ++m) z[n - m] = std::conj(A[m]);
+        fft_.transform(z, z + n, true, z + 2 * n);
+        for (std::size_t k = 0; k < n; ++k) a[k] = z[n + k].real();
+        return;
     }
-    transform(Z, z, true, work);
-    for (std::size_t k = 0; k < n; ++k) {
-        a[k] = z[k].real();
-        b[k] = z[k].imag();
+    const std::size_t half = n / 2;
+    z[0] = {A[0].real() + A[half].real(), A[0].real() - A[half].real()};
+    for (std::size_t m = 1; 2 * m <= half; ++m) {
+        const Complex p = A[m], q = std::conj(A[half - m]);
+        const Complex even = p + q, odd = (p - q) * std::conj(twiddle_[m]);
+        const Complex turned(-odd.imag(), odd.real());
+        z[half - m] = std::conj(even - turned);
+        z[m] = even + turned;
+    }
+    fft_.transform(z, z + n, true, z + 2 * n);
+    for (std::size_t k = 0; k < half; ++k) {
+        a[2 * k] = z[n + k].real();
+        a[2 * k + 1] = z[n + k].imag();
     }
 }
 

@@ -41,8 +41,8 @@ class RowSpectra {
     void inverse(const RingFft& fft, const Store& store) const;
 
   private:
-    // Eight rows at a time fill whole cache lines of the order-major layout.
-    static constexpr std::size_t kRowBlock = 8;
+    // Rows written at a time: a multiple of a cache line of the order-major layout.
+    static constexpr std::size_t kRowBlock = 16;
 
     std::size_t rows_, orders_, channels_;
     AlignedVector<double> data_;
@@ -61,20 +61,18 @@ template <class Load>
 void RowSpectra::forward(const RingFft& fft, const Load& load) {
     const std::size_t length = fft.length(), bins = fft.bins(), used = std::min(orders_, bins);
     parallel_blocks(rows_, kRowBlock, [&](std::size_t begin, std::size_t end) {
-        std::vector<double> rings(2 * length);
-        std::vector<RingFft::Complex> spectra(kRowBlock * bins + bins);
+        std::vector<double> ring(length);
+        std::vector<RingFft::Complex> spectra(kRowBlock * bins);
         RingFft::Workspace work;
         for (std::size_t channel = 0; channel < channels_; ++channel) {
-            for (std::size_t row = begin; row < end; row += 2) {
-                const bool pair = row + 1 < end;
-                load(row, channel, rings.data());
-                if (pair) {
-                    load(row + 1, channel, rings.data() + length);
-                } else {
-                    std::fill(rings.begin() + length, rings.end(), 0.0);
-                }
-                RingFft::Complex* spectrum = spectra.data() + (row - begin) * bins;
-                fft.forward(rings.data(), rings.data() + length, spectrum, spectrum + bins, work);
+            for (std::size_t row = begin; row < end; ++row) {
+                load(row, channel, ring.data());
+                fft.forward(ring.data(), spectra.data() + (row - begin) * bins, work);
+            }
+            // Orders past the ring's last bin do not occur.
+            for (std::size_t m = used; m < orders_; ++m) {
+                std::fill(at(m, 2 * channel) + begin, at(m, 2 * channel) + end, 0.0);
+                std::fill(at(m, 2 * channel + 1) + begin, at(m, 2 * channel + 1) + end, 0.0);
             }
             for (std::size_t m = 0; m < used; ++m) {
                 double* re = at(m, 2 * channel);
@@ -93,8 +91,8 @@ template <class Store>
 void RowSpectra::inverse(const RingFft& fft, const Store& store) const {
     const std::size_t length = fft.length(), bins = fft.bins(), used = std::min(orders_, bins);
     parallel_blocks(rows_, kRowBlock, [&](std::size_t begin, std::size_t end) {
-        std::vector<double> rings(2 * length);
-        std::vector<RingFft::Complex> spectra(kRowBlock * bins + bins);
+        std::vector<double> ring(length);
+        std::vector<RingFft::Complex> spectra(kRowBlock * bins);
         RingFft::Workspace work;
         for (std::size_t channel = 0; channel < channels_; ++channel) {
             for (std::size_t m = 0; m < used; ++m) {
@@ -106,13 +104,9 @@ void RowSpectra::inverse(const RingFft& fft, const Store& store) const {
                     spectra[(row - begin) * bins + m] = {re[row], real ? 0.0 : im[row]};
                 }
             }
-            for (std::size_t row = begin; row < end; row += 2) {
-                const bool pair = row + 1 < end;
-                RingFft::Complex* spectrum = spectra.data() + (row - begin) * bins;
-                if (!pair) std::fill(spectrum + bins, spectrum + 2 * bins, RingFft::Complex());
-                fft.inverse(spectrum, spectrum + bins, rings.data(), rings.data() + length, work);
-                store(row, channel, rings.data());
-                if (pair) store(row + 1, channel, rings.data() + length);
+            for (std::size_t row = begin; row < end; ++row) {
+                fft.inverse(spectra.data() + (row - begin) * bins, ring.data(), work);
+                store(row, channel, ring.data());
             }
         }
     });

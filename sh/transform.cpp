@@ -42,8 +42,8 @@ class MeridianWeight {
             spectrum[n] = c;
             if (n > 0) spectrum[size - n] = c;
         }
-        RingFft::Workspace work;
-        fine_.transform(spectrum.data(), values.data(), true, work);
+        std::vector<Complex> scratch(fine_.scratch_size());
+        fine_.transform(spectrum.data(), values.data(), true, scratch.data());
         // 1 / (2 rows) and 1 / (4 rows) undo the transforms, pi / rows is the row spacing.
         const double scale = kPi / (static_cast<double>(rows_) * 8 * rows_ * rows_);
         for (const Complex& value : values) weight_.push_back(value.real() * scale);
@@ -53,8 +53,7 @@ class MeridianWeight {
     }
 
     struct Workspace {
-        std::vector<Complex> a, b;
-        RingFft::Workspace fft;
+        std::vector<Complex> a, b, fft;
     };
 
     /// Replaces the rows of one order by their weighted values. `odd`: the order m is odd.
@@ -62,27 +61,28 @@ class MeridianWeight {
         const std::size_t n = 2 * rows_, size = 4 * rows_;
         work.a.assign(size, Complex());
         work.b.assign(size, Complex());
+        work.fft.resize(std::max(coarse_.scratch_size(), fine_.scratch_size()));
         const double sign = odd ? -1 : 1;
         for (std::size_t j = 0; j < rows_; ++j) {
             work.a[j] = {re[j], im[j]};
             work.a[n - 1 - j] = {sign * re[j], sign * im[j]};
         }
-        coarse_.transform(work.a.data(), work.b.data(), false, work.fft);
+        coarse_.transform(work.a.data(), work.b.data(), false, work.fft.data());
         std::fill(work.a.begin(), work.a.end(), Complex());
         // Degree `rows` itself does not occur in a band-limited function.
         for (std::size_t k = 0; k < rows_; ++k) {
             work.a[k] = work.b[k] * shift_[k];
             if (k > 0) work.a[size - k] = work.b[n - k] * std::conj(shift_[k]);
         }
-        fine_.transform(work.a.data(), work.b.data(), true, work.fft);
+        fine_.transform(work.a.data(), work.b.data(), true, work.fft.data());
         for (std::size_t j = 0; j < size; ++j) work.b[j] *= weight_[j];
-        fine_.transform(work.b.data(), work.a.data(), false, work.fft);
+        fine_.transform(work.b.data(), work.a.data(), false, work.fft.data());
         std::fill(work.b.begin(), work.b.end(), Complex());
         for (std::size_t k = 0; k < rows_; ++k) {
             work.b[k] = work.a[k] * std::conj(shift_[k]);
             if (k > 0) work.b[n - k] = work.a[size - k] * shift_[k];
         }
-        coarse_.transform(work.b.data(), work.a.data(), true, work.fft);
+        coarse_.transform(work.b.data(), work.a.data(), true, work.fft.data());
         for (std::size_t j = 0; j < rows_; ++j) {
             re[j] = work.a[j].real();
             im[j] = work.a[j].imag();
@@ -91,7 +91,7 @@ class MeridianWeight {
 
   private:
     std::size_t rows_;
-    RingFft coarse_, fine_;
+    ComplexFft coarse_, fine_;
     std::vector<double> weight_;
     std::vector<Complex> shift_;
 };

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "envmap/fog_kernel.h"
+
+#include <algorithm>
+#include <boost/math/special_functions/erf.hpp>
+#include <boost/math/special_functions/expint.hpp>
+#include <cmath>
+
+#include "medium/psf.h"
+#include "sh/npsf.h"
+#include "sh/quadrature.h"
+#include "sh/zonal.h"
+
+namespace airlight {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+double angle_of(double t) {
+    return 2 * std::asin(std::min(1.0, 0.5 * std::sqrt(t)));
+}
+double squared_chord(double angle) {
+    const double half = std::sin(0.5 * angle);
+    return 4 * half * half;
+}
+
+// Angles at which a split is compared with the exact kernel: inside the near part, across the
+// ripples beyond its end, and up to the antipode.
+std::vector<double> probe_angles(double radius) {
+    std::vector<double> angles;
+    for (int i = 0; i < 24; ++i) angles.push_back(radius * (i + 0.5) / 24);
+    const int count = 240;
+    for (int i = 0; i <= count; ++i) {
+        angles.push_back(radius * std::pow(kPi / radius, static_cast<double>(i) / count));
+    }
+    angles.back() = kPi;
+    return angles;
+}
+
+double taper(int l, int lmax) {
+    const int width = std::max(1, (lmax + 1) / 16);
+    const int first = lmax + 1 - width;
+    if (l < first) return 1;
+    return 0.5 * (1 + std::cos(kPi * (l - first + 0.5) / width));
+}
+
+// The two tails, erfc(a) at the near part's end and about erfc(b) beyond the last band, for one
+// tolerance on their sum.
+struct Tails {
+    double a, b;
+};
+
+Tails tails_for(double tolerance) {
+    const double a = boost::math::erfc_inv(std::min(0.5, 0.9 * tolerance));
+    return {a, 1.03 * a + 0.05};
+}
+
+SplitKernel build(double thickness, int lmax, Tails tails) {
+    const double radius = 2 * tails.a * tails.b / lmax;
+    const double alpha = tails.a / radius;
+    const PolarRule rule = gauss_legendre(lmax + 64 + lmax / 4);
+    std::vector<double> far(rule.angle.size());
+    for (std::size_t i = 0; i < far.size(); ++i) {
+        far[i] = psf_scaled(thickness, rule.angle[i]) -
+                 near_kernel(thickness, alpha, squared_chord(rule.angle[i]));
+    }
+    SplitKernel split{thickness, radius, zonal_eigenvalues(rule, far, lmax + 1),
+                      RemainderTable([&](double t) { return near_kernel(thickness, alpha, t); },
+                                     radius * radius)};
+    // The near part was cut at the radius: what it lost goes back in proportion, so that a constant
+    // map sees the energy of the exact kernel.
+    const double energy = psf_eigenvalues_scaled(thickness, 1)[0] - split.eigenvalues[0];
+    const double scale = energy / (2 * kPi * split.near.total());
+    split.near.scale(scale);
+    for (int l = 0; l <= lmax; ++l) split.eigenvalues[l] *= taper(l, lmax);
+
+    const std::vector<double> angles = probe_angles(radius);
+    const std::vector<double> smooth = zonal_evaluate(split.eigenvalues, angles);
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+        const double t = squared_chord(angles[i]);
+        const double near = t < radius * radius ? scale * near_kernel(thickness, alpha, t) : 0.0;
+        const double exact = psf_scaled(thickness, angles[i]);
+        split.error = std::max(split.error, std::fabs(near + smooth[i] - exact) / exact);
+    }
+    return split;
+}
+
+}  // namespace
+
+double near_kernel(double optical_thickness, double alpha, double t) {
+    const double z = alpha * alpha * t;
+    if (z > 700) return 0;
+    const double s = std::sqrt(t), sine = s * std::sqrt(std::max(0.0, 1 - 0.25 * t));
+    if (sine == 0) return 0;
+    const double phase = optical_thickness * sine;
+    return std::exp(0.5 * optical_thickness * t) / (2 * kPi * sine) *
+           (0.5 * kPi * std::cos(phase) * std::erfc(alpha * s) -
+            0.5 * std::sin(phase) * boost::math::expint(1, z));
+}
+
+double split_radius(int lmax, double tolerance) {
+    const Tails tails = tails_for(tolerance);
+    return 2 * tails.a * tails.b / lmax;
+}
+
+std::optional<SplitKernel> make_split_kernel(double optical_thickness, int lmax, double tolerance) {
+    Tails tails = tails_for(tolerance);
+    // A dense medium damps the kernel away from its peak, so that the tails weigh more.
+    while (2 * tails.a * tails.b / lmax < 1) {
+        SplitKernel split = build(optical_thickness, lmax, tails);
+        if (split.error <= tolerance) return split;
+        const double grow = split.error > 4 * tolerance ? 1.08 : 1.03;
+        tails.a *= grow;
+        tails.b *= grow;
+    }
+    return std::nullopt;
+}
+
+RemainderTable whole_kernel(double optical_thickness) {
+    return RemainderTable([=](double t) { return psf_scaled(optical_thickness, angle_of(t)); },
+                          4.0);
+}
+
+}  // namespace airlight

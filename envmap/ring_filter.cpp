@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "envmap/ring_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "envmap/pixel_integral.h"
+#include "envmap/tap_sum.h"
+#include "sh/aligned.h"
+#include "sh/ring_fft.h"
+
+namespace airlight {
+namespace {
+
+using Complex = RingFft::Complex;
+constexpr double kPi = 3.14159265358979323846;
+constexpr std::size_t kRowBlock = 32;
+
+// Nanoseconds of one thread on an AVX2 machine; only their ratios matter.
+constexpr double kTapCost = 0.04;     // one tap, one value
+constexpr double kTapIntegral = 60;   // one pixel integral
+constexpr double kRingTransform = 5;  // one column of a kernel's transform
+constexpr double kRingProduct = 0.8;  // one column of one channel's product
+
+struct RowRange {
+    int first, last;
+};
+
+// Rows that a kernel reaches from `row`.
+RowRange reached_rows(double radius, int rows, int row) {
+    if (radius >= 2) return {0, rows - 1};
+    const double angle = 2 * std::asin(0.5 * radius);
+    const int distance = static_cast<int>(std::floor(angle * rows / kPi + 0.5));
+    return {std::max(0, row - distance), std::min(rows - 1, row + distance)};
+}
+
+struct RowCost {
+    double direct = 0, ring = 0;
+    bool fits = true;  // no tap reaches round the ring
+};
+
+// Cost of output row `row` and its mirror image by either way.
+RowCost row_cost(const PixelIntegrator& pixels, int rows, int columns, int channels, double radius,
+                 int row) {
+    RowCost cost;
+    const RowRange range = reached_rows(radius, rows, row);
+    for (int j = range.first; j <= range.last; ++j) {
+        const double count = static_cast<double>(pixels.reach(radius * radius, row, j));
+        if (2 * count - 1 > columns) cost.fits = false;
+        const double integrals = kTapIntegral * count;
+        cost.direct += integrals + 2 * kTapCost * channels * columns * (2 * count - 1);
+        cost.ring += integrals + columns * (kRingTransform + 2 * kRingProduct * channels);
+    }
+    cost.ring += 4.0 * kRingTransform * columns * channels;
+    return cost;
+}
+
+// The number of rows from each pole that go through Fourier coefficients: the rest is cheaper
+// directly, and its taps do not wrap.
+int ring_rows(const PixelIntegrator& pixels, int rows, int columns, int channels, double radius) {
+    const int north = (rows + 1) / 2;
+    if (radius >= 2) return north;
+    int row = north;
+    while (row > 0) {
+        const RowCost cost = row_cost(pixels, rows, columns, channels, radius, row - 1);
+        if (!cost.fits || cost.direct > cost.ring) break;
+        --row;
+    }
+    return row;
+}
+
+// Input rows of the channels at hand, each channel a ring wrapped round on both sides.
+class WrappedRows {
+  public:
+    WrappedRows(const Image& map, const std::vector<int>& channels, int first, int last,
+                std::size_t pad)
+        : first_(first),
+          channels_(channels.size()),
+          pad_(pad),
+          stride_(map.width + 2 * pad + kTapSlack),
+          values_(stride_ * channels_ * (last - first + 1)) {
+        const int width = map.width;
+        for (int row = first; row <= last; ++row) {
+            const float* in = map.row(row);
+            for (std::size_t c = 0; c < channels_; ++c) {
+                float* ring = values_.data() + stride_ * ((row - first) * channels_ + c);
+                for (int x = 0; x < width; ++x) ring[pad + x] = in[x * map.channels + channels[c]];
+                for (std::size_t k = 0; k < pad; ++k) {
+                    ring[pad - 1 - k] = ring[pad + width - 1 - k];
+                    ring[pad + width + k] = ring[pad + k];
+                }
+            }
+        }
+    }
+
+    const float* ring(int row, std::size_t channel) const {
+        return values_.data() + stride_ * ((row - first_) * channels_ + channel) + pad_;
+    }
+
+  private:
+    int first_;
+    std::size_t channels_, pad_, stride_;
+    std::vector<float> values_;
+};
+
+void add_row(Image& out, const RingKernel& kernel, int row, std::size_t channel,
+             const float* values) {
+    float* pixel = out.row(row) + kernel.channels[channel];
+    const double amplitude = kernel.amplitude[channel];
+    for (int x = 0; x < out.width; ++x, pixel += out.channels) {
+        *pixel = static_cast<float>(*pixel + amplitude * values[x]);
+    }
+}
+
+// Rows [begin, end) of the northern hemisphere and their mirror images, by direct sums.
+void add_direct_rows(const Image& map, const RingKernel& kernel, const PixelIntegrator& pixels,
+                     int begin, int end, Image& out) {
+    const int rows = map.height;
+    const double radius = std::sqrt(kernel.remainder->t_max());
+    const RowRange range = {reached_rows(radius, rows, begin).first,
+                            reached_rows(radius, rows, end - 1).last};
+    std::size_t pad = 0;
+    for (int row = begin; row < end; ++row) {
+        for (int j = range.first; j <= range.last; ++j) {
+            pad = std::max(pad, pixels.reach(kernel.remainder->t_max(), row, j));
+        }
+    }
+    const WrappedRows north(map, kernel.channels, range.first, range.last, pad);
+    const WrappedRows south(map, kernel.channels, rows - 1 - range.last, rows - 1 - range.first,
+                            pad);
+    std::vector<float> taps, sums(map.width + kTapSlack);
+    struct Reach {
+        int row;
+        std::size_t begin, count;
+    };
+    std::vector<Reach> reaches;
+    std::vector<TapRow> tap_rows;
+    for (int row = begin; row < end; ++row) {
+        taps.clear();
+        reaches.clear();
+        const RowRange reached = reached_rows(radius, rows, row);
+        pixels.integrate_row(*kernel.remainder, row, reached.first, reached.last,
+                             [&](int j, std::size_t count, const double* values) {
+                                 if (count == 0) return;
+                                 reaches.push_back({j, taps.size(), count});
+                                 taps.insert(taps.end(), values, values + count);
+                             });
+        const int mirror = rows - 1 - row;
+        for (std::size_t c = 0; c < kernel.channels.size(); ++c) {
+            for (int side = 0; side < (mirror == row ? 1 : 2); ++side) {
+                tap_rows.clear();
+                for (const Reach& reach : reaches) {
+                    const float* ring =
+                        side == 0 ? north.ring(reach.row, c) : south.ring(rows - 1 - reach.row, c);
+                    tap_rows.push_back({ring, taps.data() + reach.begin, reach.count});
+                }
+                sum_taps(tap_rows.data(), tap_rows.size(), map.width, sums.data());
+                add_row(out, kernel, side == 0 ? row : mirror, c, sums.data());
+            }
+        }
+    }
+}
+
+// Fourier coefficients of the input rings that a polar cap needs.
+class RingSpectra {
+  public:
+    // Rows [0, depth) and their mirror images.
+    RingSpectra(const Image& map, const RingKernel& kernel, const RingFft& fft, int depth)
+        : rows_(map.height),
+          depth_(std::min(depth, (map.height + 1) / 2)),
+          channels_(kernel.channels.size()),
+          bins_(fft.bins()),
+          values_(2 * depth_ * channels_ * bins_) {
+        parallel_blocks(depth_, 1, [&](std::size_t begin, std::size_t end) {
+            std::vector<double> ring(map.width);
+            RingFft::Workspace work;
+            for (std::size_t row = begin; row < end; ++row) {
+                for (std::size_t south = 0; south < 2; ++south) {
+                    const int j = static_cast<int>(south ? rows_ - 1 - row : row);
+                    for (std::size_t c = 0; c < channels_; ++c) {
+                        const float* in = map.row(j) + kernel.channels[c];
+                        for (int x = 0; x < map.width; ++x) ring[x] = in[x * map.channels];
+                        fft.forward(ring.data(), at(row, south, c), work);
+                    }
+                }
+            }
+        });
+    }
+
+    const Complex* ring(int row, std::size_t channel) const {
+        const bool south = row >= depth_;
+        const std::size_t slot = south ? rows_ - 1 - row : row;
+        return values_.data() + ((slot * 2 + south) * channels_ + channel) * bins_;
+    }
+
+  private:
+    Complex* at(std::size_t slot, std::size_t south, std::size_t channel) {
+        return values_.data() + ((slot * 2 + south) * channels_ + channel) * bins_;
+    }
+
+    int rows_, depth_;
+    std::size_t channels_, bins_;
+    std::vector<Complex> values_;
+};
+
+// Output row `row` and its mirror image by products of Fourier coefficients.
+void add_ring_row(const RingKernel& kernel, const PixelIntegrator& pixels, const RingFft& fft,
+                  const RingSpectra& spectra, int row, Image& out) {
+    const int rows = out.height, columns = out.width;
+    const int mirror = rows - 1 - row, sides = mirror == row ? 1 : 2;
+    const std::size_t channels = kernel.channels.size(), bins = fft.bins();
+    std::vector<Complex> sums(sides * channels * bins), tap_bins(bins);
+    std::vector<double> ring(columns);
+    RingFft::Workspace work;
+    const RowRange range = reached_rows(std::sqrt(kernel.remainder->t_max()), rows, row);
+    pixels.integrate_row(*kernel.remainder, row, range.first, range.last,
+                         [&](int j, std::size_t count, const double* taps) {
+                             if (count == 0) return;
+                             std::fill(ring.begin(), ring.end(), 0.0);
+                             for (std::size_t k = 0; k < count; ++k) {
+                                 ring[k] = taps[k];
+                                 ring[(columns - k) % columns] = taps[k];
+                             }
+                             fft.forward(ring.data(), tap_bins.data(), work);
+                             for (int side = 0; side < sides; ++side) {
+                                 for (std::size_t c = 0; c < channels; ++c) {
+                                     const Complex* in =
+                                         spectra.ring(side == 0 ? j : rows - 1 - j, c);
+                                     Complex* sum = sums.data() + (side * channels + c) * bins;
+                                     // Taps are even in the column: their coefficients are real.
+                                     for (std::size_t m = 0; m < bins; ++m)
+                                         sum[m] += tap_bins[m].real() * in[m];
+                                 }
+                             }
+                         });
+    for (int side = 0; side < sides; ++side) {
+        for (std::size_t c = 0; c < channels; ++c) {
+            fft.inverse(sums.data() + (side * channels + c) * bins, ring.data(), work);
+            float* pixel = out.row(side == 0 ? row : mirror) + kernel.channels[c];
+            const double scale = kernel.amplitude[c] / columns;
+            for (int x = 0; x < columns; ++x, pixel += out.channels) {
+                *pixel = static_cast<float>(*pixel + scale * ring[x]);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+void add_ring_filter(const Image& map, const std::vector<RingKernel>& kernels, Image& out,
+                     Progress* progress) {
+    const PixelIntegrator pixels(map.height, map.width);
+    const int north = (map.height + 1) / 2;
+    for (const RingKernel& kernel : kernels) {
+        const double radius = std::sqrt(kernel.remainder->t_max());
+        const int channels = static_cast<int>(kernel.channels.size());
+        const int rings = ring_rows(pixels, map.height, map.width, channels, radius);
+        if (rings > 0) {
+            const RingFft fft(map.width);
+            const RingSpectra spectra(map, kernel, fft,
+                                      reached_rows(radius, map.height, rings - 1).last + 1);
+            parallel_blocks(rings, 1, [&](std::size_t row, std::size_t) {
+                add_ring_row(kernel, pixels, fft, spectra, static_cast<int>(row), out);
+                if (progress) progress->tick();
+            });
+        }
+        parallel_blocks(north - rings, kRowBlock, [&](std::size_t begin, std::size_t end) {
+            add_direct_rows(map, kernel, pixels, rings + static_cast<int>(begin),
+                            rings + static_cast<int>(end), out);
+            if (progress) progress->tick(end - begin);
+        });
+    }
+}
+
+double ring_filter_cost(int rows, int columns, int channels, int kernels, double radius) {
+    const PixelIntegrator pixels(rows, columns);
+    const int north = (rows + 1) / 2;
+    // Rows change slowly: a few dozen stand for all, more densely towards the pole.
+    double cost = 0;
+    for (int row = 0; row < north;) {
+        const int step = std::min(north - row, 1 + row / 8);
+        const RowCost one = row_cost(pixels, rows, columns, channels / kernels, radius, row);
+        cost += step * (one.fits ? std::min(one.direct, one.ring) : one.ring);
+        row += step;
+    }
+    return cost * kernels;
+}
+
+}  // namespace airlight
