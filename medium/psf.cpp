@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "medium/psf.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -10,36 +9,35 @@
 namespace airlight {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr float kPiFloat = 3.14159274f;
-
-bool in_domain(double optical_thickness, double gamma) {
-    return optical_thickness >= 0 && gamma >= 0 && gamma <= kPi;
-}
-
-// The float nearest to pi lies above it and stands for pi.
-double widen_angle(float gamma) {
-    return gamma == kPiFloat ? kPi : static_cast<double>(gamma);
-}
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
 double psf_scaled(double optical_thickness, double gamma) {
-    if (!in_domain(optical_thickness, gamma)) return std::numeric_limits<double>::quiet_NaN();
-    if (gamma == 0) return std::numeric_limits<double>::infinity();
+    gamma = detail::checked_angle(gamma);
+    if (!(gamma >= 0 && optical_thickness >= 0)) return kNan;
+    if (gamma == 0) return kInfinity;
     const detail::RayAngle angle = detail::ray_angle(gamma);
     const double rho = 2 * angle.cos_theta;
     const double h = detail::infinite_ray_integral(optical_thickness * rho, angle);
-    return h == 0 ? 0 : h / (2 * kPi * rho);
+    return h == 0 ? 0 : h / (2 * detail::kPi * rho);
 }
 
 double psf(double optical_thickness, double gamma) {
-    const double scaled = psf_scaled(optical_thickness, gamma);
-    if (std::isnan(scaled)) return scaled;
-    if (optical_thickness == 0) return 0;
-    if (std::isinf(scaled)) return scaled;
-    if (scaled == 0) return 0;
-    return optical_thickness * scaled * std::exp(-optical_thickness);
+    const double t = optical_thickness;
+    gamma = detail::checked_angle(gamma);
+    if (!(gamma >= 0 && t >= 0)) return kNan;
+    if (t == 0) return 0;
+    if (gamma == 0) return kInfinity;
+    // Two factors, neither denormal while their product is not.
+    const double half = std::exp(-0.5 * t);
+    if (half == 0) return 0;
+    const detail::RayAngle angle = detail::ray_angle(gamma);
+    // Halving a denormal gamma would round it away.
+    const double rho = gamma < 1e-10 ? gamma : 2 * angle.cos_theta;
+    const double h = detail::infinite_ray_integral(t * rho, angle) / (2 * detail::kPi);
+    return t < 1 ? t / rho * half * half * h : half * t / rho * h * half;
 }
 
 double npsf(double gamma) {
@@ -49,7 +47,7 @@ double npsf(double gamma) {
 double psf_factored(double optical_thickness, double gamma) {
     const double normalised = npsf(gamma);
     if (std::isnan(normalised) || !(optical_thickness >= 0)) {
-        return std::numeric_limits<double>::quiet_NaN();
+        return kNan;
     }
     if (optical_thickness == 0) return 0;
     if (std::isinf(normalised)) return normalised;
@@ -58,19 +56,19 @@ double psf_factored(double optical_thickness, double gamma) {
 }
 
 float psf_scaled(float optical_thickness, float gamma) {
-    return static_cast<float>(psf_scaled(double{optical_thickness}, widen_angle(gamma)));
+    return static_cast<float>(psf_scaled(double{optical_thickness}, double{gamma}));
 }
 
 float psf(float optical_thickness, float gamma) {
-    return static_cast<float>(psf(double{optical_thickness}, widen_angle(gamma)));
+    return static_cast<float>(psf(double{optical_thickness}, double{gamma}));
 }
 
 float npsf(float gamma) {
-    return static_cast<float>(npsf(widen_angle(gamma)));
+    return static_cast<float>(npsf(double{gamma}));
 }
 
 float psf_factored(float optical_thickness, float gamma) {
-    return static_cast<float>(psf_factored(double{optical_thickness}, widen_angle(gamma)));
+    return static_cast<float>(psf_factored(double{optical_thickness}, double{gamma}));
 }
 
 }  // namespace airlight

@@ -16,8 +16,9 @@ enum class PsfForm {
 /// the radiance seen at the angle `gamma` from a source at optical thickness T, divided by the
 /// source's radiant intensity over its squared distance ([Sun05] sec. 6.1, D_sv^2 L_a / I_0).
 ///
-/// Domain: optical_thickness in [0, inf], gamma in [0, pi] radians; the float overloads also take
-/// the float next above pi. Anything else, NaN included, gives NaN. gamma = 0 gives +inf, the
+/// Domain: optical_thickness in [0, inf], gamma in [0, pi] radians; a gamma that rounding put
+/// above pi, up to the float next above it, 3.14159274, stands for pi. Anything else, NaN included,
+/// gives NaN. gamma = 0 gives +inf, the
 /// value, except that PSF_0 = 0. Underflow is gradual: for T > 745 the result is 0.
 /// Accuracy: relative 1e-13 in double, 1e-6 in float.
 double psf(double optical_thickness, double gamma);
