@@ -12,13 +12,13 @@ namespace airlight {
 
 /// The rungs, cheapest first within their kind. What each computes stands in
 /// medium/airlight_tables.h, medium/airlight_rungs.h and medium/airlight.h. Nanoseconds per call on
-/// one 2 GHz-class core and largest relative error on the sets of bench/airlight_bench.cpp:
+/// one core of a shared machine and largest relative error on the sets of bench/airlight_bench.cpp:
 ///
 ///     method            ns     A        B         method      ns     A        B
 ///     f-table-nearest   47     79       8e4       sinh-gl12   335    4.0e-6   4.0e-6
 ///     f-table-bilinear  53     .20      4e9       sinh-gl16   425    6.7e-8   1.8e-7
 ///     warped-table      150    4.9e-3   3.7e-3    sinh-gl24   580    6.7e-12  3.7e-11
-///     march64           450    9.4      4.4       sinh-gl32   740    3.5e-14  2.4e-14
+///     march64           450    9.4      4.4       sinh-gl32   740    1.7e-14  1.8e-14
 ///     sinh-gl6          215    2.9e-3   3.1e-3    e1          620    2.2e-13  9.6e-14
 ///     sinh-gl8          250    2.2e-4   8.8e-4    exact       110-145  its own is under 1e-13
 ///

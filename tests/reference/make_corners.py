@@ -75,7 +75,8 @@ def airlight_scaled(gamma, t_sv, t_vp):
             with mp.workdps(120):
                 far = mp.sqrt(x_end * x_end + 2 * c * x_end + 1)
                 tail = mp.exp(-y * x_end) / far * closed_form(y * far, (x_end + c) / far)
-                assert abs((closed_form(y, c) - tail) / (mean * x_end) - 1) < 1e-25, (gamma, t_sv, t_vp)
+                error = (closed_form(y, c) - tail) / (mean * x_end) - 1
+                assert abs(error) < 1e-25, (gamma, t_sv, t_vp)
         return 2 * mean * path / (y * y) / (4 * mp.pi)
 
 
@@ -188,7 +189,8 @@ def main():
     rows, count = shipped[kind]
     count = int(sys.argv[2]) if len(sys.argv) > 2 else count
     seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1
-    print(f"# Written by make_corners.py {kind} {count} {seed}: mpmath, 40 digits, at these doubles.")
+    print(f"# Written by make_corners.py {kind} {count} {seed}: "
+          "mpmath, 40 digits, at these doubles.")
     rows(random.Random(seed), count)
 
 
