@@ -20,8 +20,10 @@ namespace {
 
 using detail::InputFile;
 
-// OpenEXR packs at most this many rows into one chunk.
-constexpr int kBlockRows = 256;
+// Rows read at once. OpenEXR packs up to 256 into one chunk; elsewhere a few are enough, and a file
+// that ends early then costs little.
+constexpr int kChunkRows = 256;
+constexpr int kBlockRows = 32;
 constexpr std::size_t kScratchBytes = std::size_t{32} << 20;
 
 /// Fills (end−begin, width, 3) with the rows [begin, end), counted from the top.
@@ -116,7 +118,6 @@ Image read_rows(int width, int height, bool grey, int block_rows, const RowReade
     image.channels = 3;
     const std::size_t row_values = static_cast<std::size_t>(width) * 3;
     Inspector inspector(options, width, grey);
-    image.pixels.reserve(row_values * static_cast<std::size_t>(height));
     for (int begin = 0; begin < height; begin += block_rows) {
         const int end = begin + std::min(block_rows, height - begin);
         const std::size_t start = image.pixels.size();
@@ -126,6 +127,8 @@ Image read_rows(int width, int height, bool grey, int block_rows, const RowReade
         read(begin, end, pixels);
         if (grey) spread_grey(pixels, count / 3);
         inspector.block(begin, pixels, count);
+        // Only a file that held up so far is given all it asks for.
+        if (begin == 0) image.pixels.reserve(row_values * static_cast<std::size_t>(height));
     }
     inspector.conclude(name, report);
     return image;
@@ -261,10 +264,10 @@ Image read_with_library(const InputFile& file, const ReadOptions& options, ReadR
     const int taken = choice.grey ? 1 : choice.last() - choice.first() + 1;
     const std::size_t row_bytes =
         static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(taken) * sizeof(float);
-    int block_rows = kBlockRows;
+    int block_rows = file.format() == detail::FileFormat::openexr ? kChunkRows : kBlockRows;
     if (!choice.contiguous()) {
         block_rows = static_cast<int>(std::clamp<std::size_t>(
-            kScratchBytes / row_bytes, 1, static_cast<std::size_t>(kBlockRows)));
+            kScratchBytes / row_bytes, 1, static_cast<std::size_t>(block_rows)));
     }
     if (spec.tile_height > 0) {
         block_rows = (block_rows + spec.tile_height - 1) / spec.tile_height * spec.tile_height;

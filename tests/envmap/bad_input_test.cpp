@@ -215,7 +215,7 @@ TEST(BadInput, WhatIsNotUprightOrNotRgbIsRefused) {
     std::string bytes = read_bytes(directory / "a.hdr");
     bytes.replace(bytes.find("rle_rgbe"), 8, "rle_xyze");
     write_bytes(directory / "a.hdr", bytes);
-    expect_refused(directory / "a.hdr", ErrorCode::data, "");
+    expect_refused(directory / "a.hdr", ErrorCode::data, "holds XYZ instead of R, G, B");
 }
 
 std::string write_refusal(const std::string& path, const Image& image, ErrorCode code,

@@ -26,6 +26,14 @@ inline Image make_map(int width = 32, int height = 16, int channels = 3) {
     return map;
 }
 
+/// Whether one of a report's notes holds that text.
+inline bool mentions(const std::vector<std::string>& notes, const std::string& text) {
+    for (const std::string& note : notes) {
+        if (note.find(text) != std::string::npos) return true;
+    }
+    return false;
+}
+
 struct FileKind {
     const char* name;  ///< with the extension
     const char* format = "openexr";
