@@ -24,16 +24,20 @@ double squared_chord(double angle) {
     return 4 * half * half;
 }
 
-// Angles at which a split is compared with the exact kernel: inside the near part, across the
-// ripples beyond its end, and up to the antipode.
-std::vector<double> probe_angles(double radius) {
+// Angles at which a split is compared with the exact kernel: inside the near part, just past its
+// end, ten to a ripple as far as the taper lets ripples go, and up to the antipode.
+std::vector<double> probe_angles(double radius, int lmax) {
     std::vector<double> angles;
-    for (int i = 0; i < 24; ++i) angles.push_back(radius * (i + 0.5) / 24);
-    const int count = 240;
-    for (int i = 0; i <= count; ++i) {
-        angles.push_back(radius * std::pow(kPi / radius, static_cast<double>(i) / count));
+    const double end = 2 * std::asin(0.5 * radius);
+    for (int i = 0; i < 24; ++i) angles.push_back(end * (i + 0.5) / 24);
+    const double quiet = std::min(kPi, end + 80.0 / lmax);
+    for (double angle = end * (1 + 1e-9); angle < quiet; angle += 0.6 / lmax)
+        angles.push_back(angle);
+    const int count = 100;
+    for (int i = 0; i < count; ++i) {
+        angles.push_back(quiet * std::pow(kPi / quiet, static_cast<double>(i) / count));
     }
-    angles.back() = kPi;
+    angles.push_back(kPi);
     return angles;
 }
 
@@ -74,7 +78,7 @@ SplitKernel build(double thickness, int lmax, Tails tails) {
     split.near.scale(scale);
     for (int l = 0; l <= lmax; ++l) split.eigenvalues[l] *= taper(l, lmax);
 
-    const std::vector<double> angles = probe_angles(radius);
+    const std::vector<double> angles = probe_angles(radius, lmax);
     const std::vector<double> smooth = zonal_evaluate(split.eigenvalues, angles);
     for (std::size_t i = 0; i < angles.size(); ++i) {
         const double t = squared_chord(angles[i]);

@@ -11,7 +11,8 @@ namespace {
 
 using Complex = ComplexFft::Complex;
 
-constexpr std::size_t kLargestDirectPrime = 61;
+// KISS FFT has butterflies for 2 … 5; its general one shares a buffer between threads.
+constexpr std::size_t kLargestDirectPrime = 5;
 constexpr double kPi = 3.14159265358979323846;
 
 std::size_t largest_prime_factor(std::size_t n) {

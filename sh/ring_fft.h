@@ -13,7 +13,7 @@ namespace airlight {
 ///
 ///     out_m = sum_k in_k exp(-+ 2 pi i m k / n)     (forward -, inverse +, no factor 1/n)
 ///
-/// Lengths with a prime factor above 61 go through Bluestein's chirp transform [Bluestein70], so
+/// Lengths with a prime factor above 5 go through Bluestein's chirp transform [Bluestein70], so
 /// the cost is O(n log n) for every n. The relative error is a few eps * log2(n) of the largest
 /// value. Objects are immutable and may be shared between threads.
 class ComplexFft {
