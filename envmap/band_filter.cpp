@@ -170,8 +170,8 @@ void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels,
 }
 
 double band_filter_cost(int rows, int columns, int channels, int lmax) {
-    const double transforms = 2.0 * 6 * rows * columns * channels;
-    const double legendre = 0.5 * lmax * lmax * rows * (0.25 + 0.25 * channels);
+    const double transforms = 2.0 * 8 * rows * columns * channels;
+    const double legendre = 0.5 * lmax * lmax * rows * (0.25 + 0.12 * channels);
     return transforms + legendre;
 }
 

@@ -42,7 +42,9 @@ constexpr Rule kRules[] = {
 // The integrand is about 1/(distance^2 + y^2) along an edge: a rule's error is rho^(-2n) with
 // rho = 2/r + sqrt(1 + 4/r^2), r = length / distance. Each choice keeps that below 1e-9, since the
 // edges of the slender pixels at a pole cancel to a hundredth.
-const Rule& rule_for(double ratio_squared) {
+const Rule& rule_for(double ratio_squared, double radians) {
+    // The sphere's own curvature counts like a distance of three radians.
+    ratio_squared = std::max(ratio_squared, radians * radians / 9);
     if (ratio_squared < 0.015 * 0.015) return kRules[0];
     if (ratio_squared < 0.1 * 0.1) return kRules[1];
     if (ratio_squared < 0.25 * 0.25) return kRules[2];
@@ -63,7 +65,7 @@ double integrate_edge(double a, double b, const Ratio& ratio, const F& f, int de
         return integrate_edge(a, middle, ratio, f, depth + 1) +
                integrate_edge(middle, b, ratio, f, depth + 1);
     }
-    const Rule& rule = rule_for(ratio_squared);
+    const Rule& rule = rule_for(ratio_squared, b - a);
     const double centre = 0.5 * (a + b), half = 0.5 * (b - a);
     double sum = 0;
     for (int i = 0; i < rule.nodes; ++i) sum += rule.weight[i] * f(centre + half * rule.node[i]);
@@ -156,7 +158,7 @@ double PixelIntegrator::parallel(const RemainderTable& remainder, const Parallel
     const double ratio_squared =
         square(view.sine * width) / (view.across + view.along * edge_half_sine_[k]);
     if (ratio_squared <= 1 && width <= kLongestPiece) {
-        const Rule& rule = rule_for(ratio_squared);
+        const Rule& rule = rule_for(ratio_squared, width);
         const double* h = half_sine_.data() + k * kRuleNodes + rule.offset;
         double sum = 0;
         for (int i = 0; i < rule.nodes; ++i) {
@@ -187,7 +189,7 @@ double PixelIntegrator::meridian(const RemainderTable& remainder, const RowView&
     const double height = view.bottom - view.top;
     const double ratio_squared = square(height) / (view.nearest_across + h * view.smallest_sine);
     if (ratio_squared <= 1 && height <= kLongestPiece) {
-        const Rule& rule = rule_for(ratio_squared);
+        const Rule& rule = rule_for(ratio_squared, height);
         double sum = 0;
         for (int i = 0; i < rule.nodes; ++i) {
             sum +=

@@ -18,8 +18,8 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kRowBlock = 32;
 
 // Nanoseconds of one thread on an AVX2 machine; only their ratios matter.
-constexpr double kTapCost = 0.04;     // one tap, one value
-constexpr double kTapIntegral = 60;   // one pixel integral
+constexpr double kTapCost = 0.035;    // one tap, one value
+constexpr double kTapIntegral = 50;   // one pixel integral
 constexpr double kRingTransform = 5;  // one column of a kernel's transform
 constexpr double kRingProduct = 0.8;  // one column of one channel's product
 

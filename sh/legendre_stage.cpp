@@ -16,7 +16,7 @@
 namespace airlight {
 namespace {
 
-constexpr std::size_t kBlock = 16;      // bands generated at a time
+constexpr std::size_t kBlock = 8;       // bands generated at a time
 constexpr std::size_t kRowPadding = 8;  // the widest vector in use, in doubles
 constexpr double kInverseStep = 0x1p-512, kTooLarge = 0x1p256;
 constexpr double kNever = -1e9;  // exponent of a padding row

@@ -21,7 +21,7 @@ namespace airlight {
 /// (synthesis). P_lm is even in cos theta where l - m is.
 ///
 /// Method: the recurrence in l, carried by the differences P_l - P_{l-1} so that rows at the poles
-/// keep their accuracy, in rows side by side (Highway, run-time dispatch), eight bands of each
+/// keep their accuracy, in rows side by side (Highway, run-time dispatch), four bands of each
 /// parity at a time, then small matrix products with all components. Seeds sin^m are kept as
 /// mantissa * 2^(512 k): a row joins the sums once |P_lm| exceeds about 2^-256, so no order
 /// underflows.

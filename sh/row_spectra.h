@@ -43,6 +43,8 @@ class RowSpectra {
   private:
     // Rows written at a time: a multiple of a cache line of the order-major layout.
     static constexpr std::size_t kRowBlock = 16;
+    // Keeps the rows of a block, 2^n apart otherwise, out of one another's cache sets.
+    static constexpr std::size_t kStagger = 4;
 
     std::size_t rows_, orders_, channels_;
     AlignedVector<double> data_;
@@ -60,14 +62,15 @@ void unfold_rows(const double* even, const double* odd, std::size_t rows, double
 template <class Load>
 void RowSpectra::forward(const RingFft& fft, const Load& load) {
     const std::size_t length = fft.length(), bins = fft.bins(), used = std::min(orders_, bins);
+    const std::size_t stride = bins + kStagger;
     parallel_blocks(rows_, kRowBlock, [&](std::size_t begin, std::size_t end) {
         std::vector<double> ring(length);
-        std::vector<RingFft::Complex> spectra(kRowBlock * bins);
+        std::vector<RingFft::Complex> spectra(kRowBlock * stride);
         RingFft::Workspace work;
         for (std::size_t channel = 0; channel < channels_; ++channel) {
             for (std::size_t row = begin; row < end; ++row) {
                 load(row, channel, ring.data());
-                fft.forward(ring.data(), spectra.data() + (row - begin) * bins, work);
+                fft.forward(ring.data(), spectra.data() + (row - begin) * stride, work);
             }
             // Orders past the ring's last bin do not occur.
             for (std::size_t m = used; m < orders_; ++m) {
@@ -78,7 +81,7 @@ void RowSpectra::forward(const RingFft& fft, const Load& load) {
                 double* re = at(m, 2 * channel);
                 double* im = at(m, 2 * channel + 1);
                 for (std::size_t row = begin; row < end; ++row) {
-                    const RingFft::Complex value = spectra[(row - begin) * bins + m];
+                    const RingFft::Complex value = spectra[(row - begin) * stride + m];
                     re[row] = value.real();
                     im[row] = value.imag();
                 }
@@ -90,9 +93,10 @@ void RowSpectra::forward(const RingFft& fft, const Load& load) {
 template <class Store>
 void RowSpectra::inverse(const RingFft& fft, const Store& store) const {
     const std::size_t length = fft.length(), bins = fft.bins(), used = std::min(orders_, bins);
+    const std::size_t stride = bins + kStagger;
     parallel_blocks(rows_, kRowBlock, [&](std::size_t begin, std::size_t end) {
         std::vector<double> ring(length);
-        std::vector<RingFft::Complex> spectra(kRowBlock * bins);
+        std::vector<RingFft::Complex> spectra(kRowBlock * stride);
         RingFft::Workspace work;
         for (std::size_t channel = 0; channel < channels_; ++channel) {
             for (std::size_t m = 0; m < used; ++m) {
@@ -101,11 +105,11 @@ void RowSpectra::inverse(const RingFft& fft, const Store& store) const {
                 // The mean and the Nyquist bin of a real ring are real.
                 const bool real = m == 0 || 2 * m == length;
                 for (std::size_t row = begin; row < end; ++row) {
-                    spectra[(row - begin) * bins + m] = {re[row], real ? 0.0 : im[row]};
+                    spectra[(row - begin) * stride + m] = {re[row], real ? 0.0 : im[row]};
                 }
             }
             for (std::size_t row = begin; row < end; ++row) {
-                fft.inverse(spectra.data() + (row - begin) * bins, ring.data(), work);
+                fft.inverse(spectra.data() + (row - begin) * stride, ring.data(), work);
                 store(row, channel, ring.data());
             }
         }
