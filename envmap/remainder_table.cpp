@@ -83,11 +83,13 @@ RemainderTable::RemainderTable(const std::function<double(double)>& kernel, doub
         for (int j = 1; j < kTerms; ++j) at_low += (j % 2 ? -1 : 1) * c[j];
         remainder = at_low;
     }
-    at_zero_ = remainder;
+    inner_ = kernel(kSmallest) * kSmallest;
+    at_zero_ = remainder + inner_;
 }
 
 void RemainderTable::scale(double factor) {
     at_zero_ *= factor;
+    inner_ *= factor;
     for (double& c : coefficients_) c *= factor;
 }
 

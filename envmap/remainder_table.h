@@ -2,6 +2,7 @@
 // The energy of a rotationally symmetric kernel beyond an angle, as a fast table.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <functional>
@@ -25,7 +26,7 @@ class RemainderTable {
     /// C at squared chord t >= 0.
     double operator()(double t) const {
         if (t >= t_max_) return 0;
-        if (t < kSmallest) return at_zero_;
+        if (t < kSmallest) return at_zero_ - inner_ * std::sqrt(t / kSmallest);
         std::uint64_t bits;
         std::memcpy(&bits, &t, sizeof bits);
         const std::size_t panel =
@@ -58,6 +59,7 @@ class RemainderTable {
 
     double t_max_;
     double at_zero_ = 0;
+    double inner_ = 0;  // energy below kSmallest, where f goes like 1/gamma
     std::size_t first_panel_;
     std::vector<double> coefficients_;  // (panels, kTerms), monomials of x in [-1, 1]
 };

@@ -95,9 +95,9 @@ bool draw_labels(const std::vector<SheetTile>& tiles, int columns, Sheet& sheet)
         const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
         const int left = kGap + column * (width + kGap);
         const int top = kGap + row * (height + kLabelHeight + kGap);
-        drawn = OIIO::ImageBufAlgo::render_text(
-                    buffer, left + 2, top + height + kLabelHeight - 7,
-                    shortened(tiles[i].label, font, width - 4), kFontSize, font, white) &&
+        drawn = OIIO::ImageBufAlgo::render_text(buffer, left + 2, top + height + kLabelHeight - 7,
+                                                shortened(tiles[i].label, font, width - 4),
+                                                kFontSize, font, white) &&
                 drawn;
     }
     return drawn;
@@ -135,25 +135,26 @@ Image scale_to(const Image& map, int width, int height) {
     const std::vector<Span> columns = spans(map.width, width), rows = spans(map.height, height);
     const auto channels = static_cast<std::size_t>(map.channels);
     Image result(width, height, map.channels);
-    parallel_blocks(static_cast<std::size_t>(height), kRowsPerBlock, [&](std::size_t begin,
-                                                                         std::size_t end) {
-        std::vector<double> sum(channels);
-        for (std::size_t row = begin; row < end; ++row) {
-            float* out = result.pixels.data() + row * static_cast<std::size_t>(width) * channels;
-            for (const Span& across : columns) {
-                std::fill(sum.begin(), sum.end(), 0.0);
-                for (std::size_t k = 0; k < rows[row].weights.size(); ++k) {
-                    const float* in = map.row(rows[row].begin + static_cast<int>(k)) +
-                                      static_cast<std::size_t>(across.begin) * channels;
-                    for (const double weight : across.weights) {
-                        const double product = weight * rows[row].weights[k];
-                        for (std::size_t c = 0; c < channels; ++c) sum[c] += product * *in++;
+    parallel_blocks(
+        static_cast<std::size_t>(height), kRowsPerBlock, [&](std::size_t begin, std::size_t end) {
+            std::vector<double> sum(channels);
+            for (std::size_t row = begin; row < end; ++row) {
+                float* out =
+                    result.pixels.data() + row * static_cast<std::size_t>(width) * channels;
+                for (const Span& across : columns) {
+                    std::fill(sum.begin(), sum.end(), 0.0);
+                    for (std::size_t k = 0; k < rows[row].weights.size(); ++k) {
+                        const float* in = map.row(rows[row].begin + static_cast<int>(k)) +
+                                          static_cast<std::size_t>(across.begin) * channels;
+                        for (const double weight : across.weights) {
+                            const double product = weight * rows[row].weights[k];
+                            for (std::size_t c = 0; c < channels; ++c) sum[c] += product * *in++;
+                        }
                     }
+                    for (std::size_t c = 0; c < channels; ++c) *out++ = static_cast<float>(sum[c]);
                 }
-                for (std::size_t c = 0; c < channels; ++c) *out++ = static_cast<float>(sum[c]);
             }
-        }
-    });
+        });
     return result;
 }
 
@@ -198,9 +199,8 @@ void write_png(const std::string& path, const Sheet& sheet, bool force) {
     const auto writer = OIIO::ImageOutput::create("png");
     const auto fail = [&](const std::string& message) {
         throw Error(ErrorCode::io,
-                    "cannot write: " + (proxy.failure() != 0
-                                            ? system_message(proxy.failure())
-                                            : detail::library_message(message)),
+                    "cannot write: " + (proxy.failure() != 0 ? system_message(proxy.failure())
+                                                             : detail::library_message(message)),
                     path);
     };
     if (!writer) fail("this build of OpenImageIO lacks PNG");
