@@ -12,9 +12,9 @@
 #include "medium/airlight.h"
 #include "medium/airlight_method.h"
 #include "medium/airlight_rungs.h"
+#include "medium/airlight_sets.h"
 #include "medium/psf.h"
 #include "medium/special_f.h"
-#include "tests/medium/airlight_sets.h"
 
 namespace airlight {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "medium/airlight_rungs.h"
-#include "tests/medium/airlight_sets.h"
+#include "medium/airlight_sets.h"
 #include "tests/medium/reference_rows.h"
 
 namespace airlight {

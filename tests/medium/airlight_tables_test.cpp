@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "medium/airlight.h"
+#include "medium/airlight_sets.h"
 #include "medium/psf.h"
 #include "medium/special_f.h"
-#include "tests/medium/airlight_sets.h"
 
 namespace airlight {
 namespace {

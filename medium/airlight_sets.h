@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two sets of rays on which the airlight methods are compared, in tests and benchmarks.
+// The two sets of rays on which the airlight methods are compared: tests, bench/, airlight ladder.
 #pragma once
 
 #include <cmath>
