@@ -22,10 +22,13 @@
 namespace airlight {
 namespace {
 
-// Smaller tolerances than this are left to the rings, whose pixel integrals reach 1e-6 with the
-// float pixels of the result.
-constexpr double kFinestSplit = 3e-6;
+// What pixel integrals and float pixels add to the error of a kernel.
 constexpr double kRingsError = 1e-6;
+// The scaled kernel's energy is at most 5 (pi^2 / 2 at T = 0): times this, even the largest float
+// scatters less than half the smallest one.
+constexpr double kInvisible = 4e-85;
+// Smaller tolerances than this are left to the rings.
+constexpr double kFinestSplit = 3e-6;
 
 std::vector<double> one_per_channel(const std::vector<double>& values, int channels,
                                     const char* name) {
@@ -45,7 +48,7 @@ std::vector<FogKernelGroup> kernel_groups(const FogPlan& plan) {
     for (int channel = 0; channel < plan.channels; ++channel) {
         const double thickness = plan.optical_thickness[channel];
         const double amplitude = plan.albedo[channel] * thickness * std::exp(-thickness);
-        if (amplitude == 0) continue;
+        if (amplitude < kInvisible) continue;
         const double shape = plan.psf == PsfForm::factored ? 1.0 : thickness;
         FogKernelGroup& group = groups[shape];
         group.shape = shape;
@@ -187,7 +190,7 @@ FogPlan plan_fog(int rows, int columns, int channels, const FogOptions& options)
                     fmt::format("tolerance {} is not in [{}, 1)", options.tolerance, kRingsError));
     }
     plan.method = options.method;
-    plan.tolerance = std::clamp(options.tolerance, kFinestSplit, 0.1);
+    plan.tolerance = std::clamp(options.tolerance, kFinestSplit, 0.1) - kRingsError;
     plan.groups = kernel_groups(plan);
     if (plan.groups.empty()) return plan;
 

@@ -59,7 +59,7 @@ struct FogPlan {
     std::vector<double> optical_thickness, albedo;  ///< one per channel
     /// Kernels of the channels that scatter at all; the others cost nothing.
     std::vector<FogKernelGroup> groups;
-    double tolerance = 0;  ///< that the split is built for
+    double tolerance = 0;  ///< that the split's kernel is built for
     int lmax = -1;         ///< highest band of sh and split
     double radius = 0;     ///< of the near part, radians
     /// Bound on the relative error of scattered light: measured on the kernel for split, a priori

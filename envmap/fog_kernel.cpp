@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/expint.hpp>
+#include <cassert>
 #include <cmath>
 
 #include "medium/psf.h"
@@ -84,7 +85,9 @@ SplitKernel build(double thickness, int lmax, Tails tails) {
         const double t = squared_chord(angles[i]);
         const double near = t < radius * radius ? scale * near_kernel(thickness, alpha, t) : 0.0;
         const double exact = psf_scaled(thickness, angles[i]);
-        split.error = std::max(split.error, std::fabs(near + smooth[i] - exact) / exact);
+        const double error = std::fabs(near + smooth[i] - exact) / exact;
+        assert(std::isfinite(error));
+        split.error = std::max(split.error, error);
     }
     return split;
 }
@@ -110,7 +113,9 @@ double split_radius(int lmax, double tolerance) {
 std::optional<SplitKernel> make_split_kernel(double optical_thickness, int lmax, double tolerance) {
     Tails tails = tails_for(tolerance);
     // A dense medium damps the kernel away from its peak, so that the tails weigh more.
-    while (2 * tails.a * tails.b / lmax < 1) {
+    // alpha = lmax / (2 b); below sqrt(T) the near part would not fall off.
+    while (2 * tails.a * tails.b / lmax < 1 &&
+           lmax * lmax > 4 * tails.b * tails.b * optical_thickness) {
         SplitKernel split = build(optical_thickness, lmax, tails);
         if (split.error <= tolerance) return split;
         const double grow = split.error > 4 * tolerance ? 1.08 : 1.03;

@@ -38,7 +38,7 @@ struct SplitKernel {
 double near_kernel(double optical_thickness, double alpha, double t);
 
 /// Builds the split with bands 0 … lmax whose measured error is at most `tolerance`; the radius is
-/// what that takes, or nothing if that would be 1 or more.
+/// what that takes, or nothing if that would be 1 or more, or T too large for so few bands.
 std::optional<SplitKernel> make_split_kernel(double optical_thickness, int lmax, double tolerance);
 
 /// The near part's radius that a tolerance takes with lmax bands, before measuring.

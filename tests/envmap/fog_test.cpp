@@ -239,9 +239,25 @@ TEST(Fog, ThickMediaUnderflowToBlackWithoutNoise) {
     const Image map = test_map(32, 16);
     for (const double thickness : {200.0, 700.0, 1e4, 1e300}) {
         const FogPlan plan = plan_fog(16, 32, kChannels, options_for(thickness, 1e-3));
+        EXPECT_TRUE(plan.groups.empty());
         Image total = scattered_light(map, plan);
         add_direct_light(map, plan, total);
         for (const float value : total.pixels) ASSERT_EQ(value, 0);
+    }
+}
+
+TEST(Fog, ThicknessAtTheEdgeOfFloatKeepsItsTolerance) {
+    Image map(256, 128, 1);
+    std::fill(map.pixels.begin(), map.pixels.end(), 1e30f);
+    map.at(40, 90, 0) = 3e38f;
+    const Image truth =
+        scattered_light(map, plan_fog(128, 256, 1, options_for(120, 1e-6, FogMethod::rings)));
+    for (const double tolerance : {1e-1, 1e-3}) {
+        const Image image =
+            scattered_light(map, plan_fog(128, 256, 1, options_for(120, tolerance)));
+        for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+            ASSERT_NEAR(image.pixels[i] / truth.pixels[i], 1, tolerance);
+        }
     }
 }
 
