@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "envmap/band_filter.h"
 #include "envmap/fog_kernel.h"
+#include "envmap/kernel_reach.h"
 #include "envmap/ring_filter.h"
 #include "sh/npsf.h"
 #include "sh/transform.h"
@@ -74,14 +75,15 @@ int largest_lmax(int rows, int columns) {
 // Builds the kernels of the cheapest split, or chooses the rings where those are cheaper still.
 void choose_split(FogPlan& plan) {
     const int channels = scattering_channels(plan), groups = static_cast<int>(plan.groups.size());
+    const KernelReach reach(plan.rows, plan.columns);
     std::vector<std::pair<double, int>> candidates;  // cost, lmax
-    const double rings = ring_filter_cost(plan.rows, plan.columns, channels, groups, 2.0);
+    const double rings = ring_filter_cost(reach, channels, groups, 2.0);
     const int end = std::min(3 * plan.rows / 4, (plan.columns - 1) / 2);
     for (int lmax = 12; lmax <= end; lmax += std::max(4, lmax / 8)) {
         const double radius = split_radius(lmax, plan.tolerance);
         if (radius > 0.7) continue;
         const double cost = band_filter_cost(plan.rows, plan.columns, channels, lmax) +
-                            ring_filter_cost(plan.rows, plan.columns, channels, groups, radius);
+                            ring_filter_cost(reach, channels, groups, radius);
         if (cost < rings) candidates.push_back({cost, lmax});
     }
     std::sort(candidates.begin(), candidates.end());
@@ -138,6 +140,26 @@ void run_sh(const Image& map, const FogPlan& plan, Image& out) {
     }
     const SphericalTransform transform(map.height, map.width, plan.lmax);
     transform.convolve(map.pixels.data(), map.channels, eigenvalues.data(), out.pixels.data());
+}
+
+float smallest(const std::vector<float>& values) {
+    return ordered_reduce<float>(
+        values.size(), std::size_t{1} << 16, std::numeric_limits<float>::infinity(),
+        [&](std::size_t begin, std::size_t end) {
+            // Sixteen minima side by side, so that the compiler can use vectors.
+            constexpr std::size_t kLanes = 16;
+            float lane[kLanes];
+            std::fill(lane, lane + kLanes, std::numeric_limits<float>::infinity());
+            std::size_t i = begin;
+            for (; i + kLanes <= end; i += kLanes) {
+                for (std::size_t k = 0; k < kLanes; ++k) {
+                    lane[k] = values[i + k] < lane[k] ? values[i + k] : lane[k];
+                }
+            }
+            for (; i < end; ++i) lane[0] = std::min(lane[0], values[i]);
+            return *std::min_element(lane, lane + kLanes);
+        },
+        [](float& least, float part) { least = std::min(least, part); });
 }
 
 }  // namespace
@@ -249,8 +271,7 @@ Image scattered_light(const Image& map, const FogPlan& plan, Progress* progress)
     }
     // Rounding may leave -1e-16 of the brightest pixel where nothing shines. What sh rings is its
     // own.
-    if (plan.method != FogMethod::sh &&
-        std::none_of(map.pixels.begin(), map.pixels.end(), [](float v) { return v < 0; })) {
+    if (plan.method != FogMethod::sh && smallest(out.pixels) < 0 && smallest(map.pixels) >= 0) {
         for (float& value : out.pixels) value = std::max(value, 0.0f);
     }
     return out;
@@ -265,22 +286,28 @@ Image direct_light(const Image& map, const FogPlan& plan) {
 
 void add_direct_light(const Image& map, const FogPlan& plan, Image& scattered) {
     const std::size_t channels = plan.optical_thickness.size();
-    std::vector<double> transmittance;
-    for (const double thickness : plan.optical_thickness) {
-        transmittance.push_back(std::exp(-thickness));
+    const std::size_t row_values = map.width * channels;
+    // One factor per value of a row makes the loop the same for every channel.
+    std::vector<double> transmittance(row_values);
+    for (std::size_t i = 0; i < row_values; ++i) {
+        transmittance[i] = std::exp(-plan.optical_thickness[i % channels]);
     }
     parallel_blocks(map.height, 16, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t pixel = begin * map.width; pixel < end * map.width; ++pixel) {
-            for (std::size_t c = 0; c < channels; ++c) {
-                const float in = map.pixels[pixel * channels + c];
-                float& out = scattered.pixels[pixel * channels + c];
-                // Untouched where there is no fog: -0 stays -0.
-                out = plan.optical_thickness[c] == 0
-                          ? in
-                          : static_cast<float>(out + transmittance[c] * in);
+        for (std::size_t row = begin; row < end; ++row) {
+            const float* in = map.pixels.data() + row * row_values;
+            float* out = scattered.pixels.data() + row * row_values;
+            for (std::size_t i = 0; i < row_values; ++i) {
+                out[i] = static_cast<float>(out[i] + transmittance[i] * in[i]);
             }
         }
     });
+    // Untouched where there is no fog: -0 stays -0.
+    for (std::size_t c = 0; c < channels; ++c) {
+        if (plan.optical_thickness[c] != 0) continue;
+        for (std::size_t i = c; i < map.pixels.size(); i += channels) {
+            scattered.pixels[i] = map.pixels[i];
+        }
+    }
 }
 
 }  // namespace airlight

@@ -84,7 +84,8 @@ double over_sine_squared(const RemainderTable& remainder, double t) {
 
 }  // namespace
 
-PixelIntegrator::PixelIntegrator(int rows, int columns) : rows_(rows), columns_(columns) {
+PixelIntegrator::PixelIntegrator(int rows, int columns)
+    : rows_(rows), columns_(columns), reach_(rows, columns) {
     const double width = 2 * kPi / columns;
     for (int k = 0; k <= columns / 2; ++k) {
         edge_half_sine_.push_back(k == 0 ? 0 : square(std::sin(0.5 * (k - 0.5) * width)));
@@ -101,21 +102,6 @@ double PixelIntegrator::colatitude(int row) const {
 }
 double PixelIntegrator::edge(int row) const {
     return kPi * row / rows_;
-}
-
-std::size_t PixelIntegrator::reach(double t_max, int row, int j) const {
-    const std::size_t all = static_cast<std::size_t>(columns_) / 2 + 1;
-    const double theta_i = colatitude(row);
-    // The nearest colatitude of row j decides how much of the chord is left for the azimuth; the
-    // smallest sine in the row makes the estimate generous.
-    const double nearest = std::clamp(theta_i, edge(j), edge(j + 1));
-    const double left = t_max - 4 * square(std::sin(0.5 * (nearest - theta_i)));
-    if (left <= 0) return 0;
-    const double smallest = std::min(std::sin(edge(j)), std::sin(edge(j + 1)));
-    const double sine_squared = left / (4 * smallest * std::sin(theta_i));
-    if (!(sine_squared < 1)) return all;
-    const double phi = 2 * std::asin(std::sqrt(sine_squared));
-    return std::min(all, static_cast<std::size_t>(phi * columns_ / (2 * kPi) + 0.5) + 1);
 }
 
 PixelIntegrator::RowView PixelIntegrator::view_row(int row, int j) const {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "envmap/kernel_reach.h"
 #include "envmap/remainder_table.h"
 
 namespace airlight {
@@ -18,22 +19,19 @@ namespace airlight {
 /// kernel's energy beyond gamma, so the singularity at gamma = 0 never appears: one formula serves
 /// the own pixel, its neighbours, needle-shaped pixels at the poles and whole hemispheres. Edges
 /// are cut until each piece is shorter than its distance, then integrated by Gauss-Legendre.
-/// Relative error about 1e-9 of an edge, 1e-7 of a pixel. Neighbouring pixels share edges, so the taps of all pixels
-/// sum to the kernel's energy to rounding.
+/// Relative error about 1e-9 of an edge, 1e-7 of a pixel. Neighbouring pixels share edges, so the
+/// taps of all pixels sum to the kernel's energy to rounding.
 class PixelIntegrator {
   public:
     PixelIntegrator(int rows, int columns);
 
-    /// Taps of output row `row` over input rows `first` … `last`; `visit(j, count, taps)` gets
+    /// Taps of output row `row` over the rows that the kernel reaches; `visit(j, count, taps)` gets
     /// K_ij(k) for k = 0 … count-1 (K is even in k and periodic in `columns`); count is at most
     /// columns/2 + 1 and pixels from `count` on lie beyond the kernel's end.
     template <class Visit>
-    void integrate_row(const RemainderTable& remainder, int row, int first, int last,
-                       const Visit& visit) const;
+    void integrate_row(const RemainderTable& remainder, int row, const Visit& visit) const;
 
-    /// The number of columns on one side, the own one included, that the kernel's support reaches
-    /// in row j from row i, at most columns/2 + 1.
-    std::size_t reach(double t_max, int row, int j) const;
+    const KernelReach& reach() const { return reach_; }
 
   private:
     // Gauss-Legendre nodes of all rules in use, one after the other, per edge.
@@ -59,18 +57,20 @@ class PixelIntegrator {
     double meridian(const RemainderTable& remainder, const RowView& view, std::size_t k) const;
 
     int rows_, columns_;
+    KernelReach reach_;
     std::vector<double>
         half_sine_;  // sin^2(phi/2) at the rule nodes within column k, (k, kRuleNodes)
     std::vector<double> edge_half_sine_;  // sin^2(phi/2) at the inner edge of column k
 };
 
 template <class Visit>
-void PixelIntegrator::integrate_row(const RemainderTable& remainder, int row, int first, int last,
+void PixelIntegrator::integrate_row(const RemainderTable& remainder, int row,
                                     const Visit& visit) const {
     constexpr double kTwoPi = 6.28318530717958647693;
     std::vector<double> taps, upper, lower;
-    for (int j = first; j <= last; ++j) {
-        const std::size_t count = reach(remainder.t_max(), row, j);
+    const RowRange reached = reach_.rows(remainder.radius(), row);
+    for (int j = reached.first; j <= reached.last; ++j) {
+        const std::size_t count = reach_.columns(remainder.radius(), row, j);
         // Edges along the row's boundaries; the upper ones were the last row's lower ones.
         upper.swap(lower);
         const ParallelView top = view_parallel(row, j), bottom = view_parallel(row, j + 1);

@@ -47,7 +47,8 @@ class RemainderTable {
 
     /// C(0), the energy of the kernel over 2 pi.
     double total() const { return at_zero_; }
-    double t_max() const { return t_max_; }
+    /// Where the kernel ends, as a chord length.
+    double radius() const { return std::sqrt(t_max_); }
 
     /// Multiplies the kernel by a constant.
     void scale(double factor);

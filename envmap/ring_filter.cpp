@@ -18,22 +18,10 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kRowBlock = 32;
 
 // Nanoseconds of one thread on an AVX2 machine; only their ratios matter.
-constexpr double kTapCost = 0.035;    // one tap, one value
+constexpr double kTapCost = 0.027;    // one tap, one value
 constexpr double kTapIntegral = 50;   // one pixel integral
 constexpr double kRingTransform = 5;  // one column of a kernel's transform
 constexpr double kRingProduct = 0.8;  // one column of one channel's product
-
-struct RowRange {
-    int first, last;
-};
-
-// Rows that a kernel reaches from `row`.
-RowRange reached_rows(double radius, int rows, int row) {
-    if (radius >= 2) return {0, rows - 1};
-    const double angle = 2 * std::asin(0.5 * radius);
-    const int distance = static_cast<int>(std::floor(angle * rows / kPi + 0.5));
-    return {std::max(0, row - distance), std::min(rows - 1, row + distance)};
-}
 
 struct RowCost {
     double direct = 0, ring = 0;
@@ -41,12 +29,12 @@ struct RowCost {
 };
 
 // Cost of output row `row` and its mirror image by either way.
-RowCost row_cost(const PixelIntegrator& pixels, int rows, int columns, int channels, double radius,
-                 int row) {
+RowCost row_cost(const KernelReach& reach, int channels, double radius, int row) {
+    const int columns = reach.column_count();
     RowCost cost;
-    const RowRange range = reached_rows(radius, rows, row);
-    for (int j = range.first; j <= range.last; ++j) {
-        const double count = static_cast<double>(pixels.reach(radius * radius, row, j));
+    const RowRange reached = reach.rows(radius, row);
+    for (int j = reached.first; j <= reached.last; ++j) {
+        const double count = static_cast<double>(reach.columns(radius, row, j));
         if (2 * count - 1 > columns) cost.fits = false;
         const double integrals = kTapIntegral * count;
         cost.direct += integrals + 2 * kTapCost * channels * columns * (2 * count - 1);
@@ -58,12 +46,12 @@ RowCost row_cost(const PixelIntegrator& pixels, int rows, int columns, int chann
 
 // The number of rows from each pole that go through Fourier coefficients: the rest is cheaper
 // directly, and its taps do not wrap.
-int ring_rows(const PixelIntegrator& pixels, int rows, int columns, int channels, double radius) {
-    const int north = (rows + 1) / 2;
+int ring_rows(const KernelReach& reach, int channels, double radius) {
+    const int north = (reach.row_count() + 1) / 2;
     if (radius >= 2) return north;
     int row = north;
     while (row > 0) {
-        const RowCost cost = row_cost(pixels, rows, columns, channels, radius, row - 1);
+        const RowCost cost = row_cost(reach, channels, radius, row - 1);
         if (!cost.fits || cost.direct > cost.ring) break;
         --row;
     }
@@ -113,50 +101,85 @@ void add_row(Image& out, const RingKernel& kernel, int row, std::size_t channel,
     }
 }
 
+// The taps of two output rows, for every input row that either reaches.
+class TapPair {
+  public:
+    // Rows `row` and `row` + 1; `single` leaves the second one's taps 0.
+    void compute(const RingKernel& kernel, const PixelIntegrator& pixels, int row, bool single) {
+        const double radius = kernel.remainder->radius();
+        const KernelReach& reach = pixels.reach();
+        const int last = single ? row : row + 1;
+        first_ = reach.rows(radius, row).first;
+        const int rows = reach.rows(radius, last).last - first_ + 1;
+        begin_.assign(1, 0);
+        for (int j = first_; j < first_ + rows; ++j) {
+            begin_.push_back(begin_.back() + std::max(reach.columns(radius, row, j),
+                                                      reach.columns(radius, last, j)));
+        }
+        taps_.assign(2 * begin_.back(), 0.0f);
+        for (int side = 0; side <= last - row; ++side) {
+            pixels.integrate_row(*kernel.remainder, row + side,
+                                 [&](int j, std::size_t count, const double* values) {
+                                     float* taps = taps_.data() + 2 * begin_[j - first_] + side;
+                                     for (std::size_t k = 0; k < count; ++k) {
+                                         taps[2 * k] = static_cast<float>(values[k]);
+                                     }
+                                 });
+        }
+    }
+
+    // Calls visit(j, taps, count) for the input rows.
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        for (std::size_t n = 0; n + 1 < begin_.size(); ++n) {
+            const std::size_t count = begin_[n + 1] - begin_[n];
+            if (count > 0) visit(first_ + static_cast<int>(n), taps_.data() + 2 * begin_[n], count);
+        }
+    }
+
+  private:
+    int first_ = 0;
+    std::vector<std::size_t> begin_;
+    std::vector<float> taps_;
+};
+
 // Rows [begin, end) of the northern hemisphere and their mirror images, by direct sums.
 void add_direct_rows(const Image& map, const RingKernel& kernel, const PixelIntegrator& pixels,
                      int begin, int end, Image& out) {
     const int rows = map.height;
-    const double radius = std::sqrt(kernel.remainder->t_max());
-    const RowRange range = {reached_rows(radius, rows, begin).first,
-                            reached_rows(radius, rows, end - 1).last};
+    const double radius = kernel.remainder->radius();
+    const KernelReach& reach = pixels.reach();
+    const RowRange range = {reach.rows(radius, begin).first, reach.rows(radius, end - 1).last};
     std::size_t pad = 0;
     for (int row = begin; row < end; ++row) {
         for (int j = range.first; j <= range.last; ++j) {
-            pad = std::max(pad, pixels.reach(kernel.remainder->t_max(), row, j));
+            pad = std::max(pad, reach.columns(radius, row, j));
         }
     }
     const WrappedRows north(map, kernel.channels, range.first, range.last, pad);
     const WrappedRows south(map, kernel.channels, rows - 1 - range.last, rows - 1 - range.first,
                             pad);
-    std::vector<float> taps, sums(map.width + kTapSlack);
-    struct Reach {
-        int row;
-        std::size_t begin, count;
-    };
-    std::vector<Reach> reaches;
+    TapPair taps;
     std::vector<TapRow> tap_rows;
-    for (int row = begin; row < end; ++row) {
-        taps.clear();
-        reaches.clear();
-        const RowRange reached = reached_rows(radius, rows, row);
-        pixels.integrate_row(*kernel.remainder, row, reached.first, reached.last,
-                             [&](int j, std::size_t count, const double* values) {
-                                 if (count == 0) return;
-                                 reaches.push_back({j, taps.size(), count});
-                                 taps.insert(taps.end(), values, values + count);
-                             });
-        const int mirror = rows - 1 - row;
+    std::vector<float> sums[2];
+    for (std::vector<float>& sum : sums) sum.resize(map.width + kTapSlack);
+    for (int row = begin; row < end; row += 2) {
+        const int count = std::min(2, end - row);
+        taps.compute(kernel, pixels, row, count == 1);
         for (std::size_t c = 0; c < kernel.channels.size(); ++c) {
-            for (int side = 0; side < (mirror == row ? 1 : 2); ++side) {
+            for (const bool mirrored : {false, true}) {
                 tap_rows.clear();
-                for (const Reach& reach : reaches) {
-                    const float* ring =
-                        side == 0 ? north.ring(reach.row, c) : south.ring(rows - 1 - reach.row, c);
-                    tap_rows.push_back({ring, taps.data() + reach.begin, reach.count});
+                taps.for_each([&](int j, const float* values, std::size_t columns) {
+                    tap_rows.push_back({mirrored ? south.ring(rows - 1 - j, c) : north.ring(j, c),
+                                        values, columns});
+                });
+                sum_taps(tap_rows.data(), tap_rows.size(), map.width, sums[0].data(),
+                         sums[1].data());
+                for (int side = 0; side < count; ++side) {
+                    const int mirror = rows - 1 - row - side;
+                    if (mirrored && mirror == row + side) continue;
+                    add_row(out, kernel, mirrored ? mirror : row + side, c, sums[side].data());
                 }
-                sum_taps(tap_rows.data(), tap_rows.size(), map.width, sums.data());
-                add_row(out, kernel, side == 0 ? row : mirror, c, sums.data());
             }
         }
     }
@@ -213,27 +236,23 @@ void add_ring_row(const RingKernel& kernel, const PixelIntegrator& pixels, const
     std::vector<Complex> sums(sides * channels * bins), tap_bins(bins);
     std::vector<double> ring(columns);
     RingFft::Workspace work;
-    const RowRange range = reached_rows(std::sqrt(kernel.remainder->t_max()), rows, row);
-    pixels.integrate_row(*kernel.remainder, row, range.first, range.last,
-                         [&](int j, std::size_t count, const double* taps) {
-                             if (count == 0) return;
-                             std::fill(ring.begin(), ring.end(), 0.0);
-                             for (std::size_t k = 0; k < count; ++k) {
-                                 ring[k] = taps[k];
-                                 ring[(columns - k) % columns] = taps[k];
-                             }
-                             fft.forward(ring.data(), tap_bins.data(), work);
-                             for (int side = 0; side < sides; ++side) {
-                                 for (std::size_t c = 0; c < channels; ++c) {
-                                     const Complex* in =
-                                         spectra.ring(side == 0 ? j : rows - 1 - j, c);
-                                     Complex* sum = sums.data() + (side * channels + c) * bins;
-                                     // Taps are even in the column: their coefficients are real.
-                                     for (std::size_t m = 0; m < bins; ++m)
-                                         sum[m] += tap_bins[m].real() * in[m];
-                                 }
-                             }
-                         });
+    pixels.integrate_row(*kernel.remainder, row, [&](int j, std::size_t count, const double* taps) {
+        if (count == 0) return;
+        std::fill(ring.begin(), ring.end(), 0.0);
+        for (std::size_t k = 0; k < count; ++k) {
+            ring[k] = taps[k];
+            ring[(columns - k) % columns] = taps[k];
+        }
+        fft.forward(ring.data(), tap_bins.data(), work);
+        for (int side = 0; side < sides; ++side) {
+            for (std::size_t c = 0; c < channels; ++c) {
+                const Complex* in = spectra.ring(side == 0 ? j : rows - 1 - j, c);
+                Complex* sum = sums.data() + (side * channels + c) * bins;
+                // Taps are even in the column: their coefficients are real.
+                for (std::size_t m = 0; m < bins; ++m) sum[m] += tap_bins[m].real() * in[m];
+            }
+        }
+    });
     for (int side = 0; side < sides; ++side) {
         for (std::size_t c = 0; c < channels; ++c) {
             fft.inverse(sums.data() + (side * channels + c) * bins, ring.data(), work);
@@ -253,13 +272,13 @@ void add_ring_filter(const Image& map, const std::vector<RingKernel>& kernels, I
     const PixelIntegrator pixels(map.height, map.width);
     const int north = (map.height + 1) / 2;
     for (const RingKernel& kernel : kernels) {
-        const double radius = std::sqrt(kernel.remainder->t_max());
-        const int channels = static_cast<int>(kernel.channels.size());
-        const int rings = ring_rows(pixels, map.height, map.width, channels, radius);
+        const double radius = kernel.remainder->radius();
+        const int rings =
+            ring_rows(pixels.reach(), static_cast<int>(kernel.channels.size()), radius);
         if (rings > 0) {
             const RingFft fft(map.width);
             const RingSpectra spectra(map, kernel, fft,
-                                      reached_rows(radius, map.height, rings - 1).last + 1);
+                                      pixels.reach().rows(radius, rings - 1).last + 1);
             parallel_blocks(rings, 1, [&](std::size_t row, std::size_t) {
                 add_ring_row(kernel, pixels, fft, spectra, static_cast<int>(row), out);
                 if (progress) progress->tick();
@@ -273,14 +292,13 @@ void add_ring_filter(const Image& map, const std::vector<RingKernel>& kernels, I
     }
 }
 
-double ring_filter_cost(int rows, int columns, int channels, int kernels, double radius) {
-    const PixelIntegrator pixels(rows, columns);
-    const int north = (rows + 1) / 2;
+double ring_filter_cost(const KernelReach& reach, int channels, int kernels, double radius) {
+    const int north = (reach.row_count() + 1) / 2;
     // Rows change slowly: a few dozen stand for all, more densely towards the pole.
     double cost = 0;
     for (int row = 0; row < north;) {
         const int step = std::min(north - row, 1 + row / 8);
-        const RowCost one = row_cost(pixels, rows, columns, channels / kernels, radius, row);
+        const RowCost one = row_cost(reach, channels / kernels, radius, row);
         cost += step * (one.fits ? std::min(one.direct, one.ring) : one.ring);
         row += step;
     }

@@ -7,6 +7,7 @@
 
 #include "core/progress.h"
 #include "envmap/image.h"
+#include "envmap/kernel_reach.h"
 #include "envmap/remainder_table.h"
 
 namespace airlight {
@@ -29,8 +30,8 @@ struct RingKernel {
 void add_ring_filter(const Image& map, const std::vector<RingKernel>& kernels, Image& out,
                      Progress* progress);
 
-/// What add_ring_filter costs for a kernel of that radius (chord length), in nanoseconds of one
-/// thread: a model for choosing between methods, fitted on one AVX2 machine.
-double ring_filter_cost(int rows, int columns, int channels, int kernels, double radius);
+/// What add_ring_filter costs for `kernels` kernels of that radius on `channels` channels in all,
+/// in nanoseconds of one thread: a model for choosing between methods, fitted on one machine.
+double ring_filter_cost(const KernelReach& reach, int channels, int kernels, double radius);
 
 }  // namespace airlight
