@@ -130,22 +130,22 @@ struct SphericalTransform::Impl {
         return s;
     }
 
+    // `map` points at the first of `count` channels of pixels that lie `stride` values apart.
     template <class T>
-    RowSpectra spectra_of(const T* map, std::size_t channels) const {
-        RowSpectra spectra(rows, static_cast<std::size_t>(lmax) + 1, channels);
+    RowSpectra spectra_of(const T* map, std::size_t stride, std::size_t count) const {
+        RowSpectra spectra(rows, static_cast<std::size_t>(lmax) + 1, count);
         spectra.forward(ring, [&](std::size_t row, std::size_t channel, double* values) {
-            const T* in = map + row * columns * channels + channel;
-            for (std::size_t k = 0; k < columns; ++k) values[k] = in[k * channels];
+            const T* in = map + row * columns * stride + channel;
+            for (std::size_t k = 0; k < columns; ++k) values[k] = in[k * stride];
         });
         return spectra;
     }
 
     template <class T>
-    void map_of(const RowSpectra& spectra, T* map) const {
-        const std::size_t channels = spectra.channels();
+    void map_of(const RowSpectra& spectra, std::size_t stride, T* map) const {
         spectra.inverse(ring, [&](std::size_t row, std::size_t channel, const double* values) {
-            T* out = map + row * columns * channels + channel;
-            for (std::size_t k = 0; k < columns; ++k) out[k * channels] = static_cast<T>(values[k]);
+            T* out = map + row * columns * stride + channel;
+            for (std::size_t k = 0; k < columns; ++k) out[k * stride] = static_cast<T>(values[k]);
         });
     }
 
@@ -224,7 +224,7 @@ int SphericalTransform::lmax() const {
 template <class T>
 void SphericalTransform::analyze(const T* map, int channels, T* coefficients) const {
     const Impl& impl = *impl_;
-    RowSpectra spectra = impl.spectra_of(map, channels);
+    RowSpectra spectra = impl.spectra_of(map, channels, channels);
     const std::size_t count = static_cast<std::size_t>(impl.lmax + 1) * (impl.lmax + 1);
     impl.for_each_order(spectra.components(), [&](std::size_t m, Impl::Scratch& s) {
         impl.analyze_order(spectra, m, s);
@@ -255,28 +255,32 @@ void SphericalTransform::synthesize(const T* coefficients, int channels, T* map)
         }
         impl.synthesize_order(spectra, m, s);
     });
-    impl.map_of(spectra, map);
+    impl.map_of(spectra, channels, map);
 }
 
 template <class T>
 void SphericalTransform::convolve(const T* map, int channels, const double* eigenvalues,
                                   T* out) const {
     const Impl& impl = *impl_;
-    RowSpectra spectra = impl.spectra_of(map, channels);
     const std::size_t orders = static_cast<std::size_t>(impl.lmax) + 1;
-    impl.for_each_order(spectra.components(), [&](std::size_t m, Impl::Scratch& s) {
-        impl.analyze_order(spectra, m, s);
-        double* value = s.coefficients.data();
-        for (std::size_t l = m; l < orders; ++l) {
-            for (int channel = 0; channel < channels; ++channel, value += 2) {
-                const double factor = eigenvalues[channel * orders + l];
-                value[0] *= factor;
-                value[1] *= factor;
+    // Two channels at a time: with all of them, the row spectra would take twice the map's memory.
+    for (int first = 0; first < channels; first += 2) {
+        const int count = std::min(2, channels - first);
+        RowSpectra spectra = impl.spectra_of(map + first, channels, count);
+        impl.for_each_order(spectra.components(), [&](std::size_t m, Impl::Scratch& s) {
+            impl.analyze_order(spectra, m, s);
+            double* value = s.coefficients.data();
+            for (std::size_t l = m; l < orders; ++l) {
+                for (int channel = first; channel < first + count; ++channel, value += 2) {
+                    const double factor = eigenvalues[channel * orders + l];
+                    value[0] *= factor;
+                    value[1] *= factor;
+                }
             }
-        }
-        impl.synthesize_order(spectra, m, s);
-    });
-    impl.map_of(spectra, out);
+            impl.synthesize_order(spectra, m, s);
+        });
+        impl.map_of(spectra, channels, out + first);
+    }
 }
 
 template void SphericalTransform::analyze(const float*, int, float*) const;
