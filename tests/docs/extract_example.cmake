@@ -1,0 +1,13 @@
+# Writes the C++ program of the README to OUTPUT, byte for byte.
+cmake_minimum_required(VERSION 3.25)
+file(READ "${README}" text)
+string(FIND "${text}" "\n```cpp\n" begin)
+if(begin LESS 0)
+    message(FATAL_ERROR "README.md has no C++ example")
+endif()
+math(EXPR begin "${begin} + 8")
+string(SUBSTRING "${text}" ${begin} -1 text)
+string(FIND "${text}" "\n```\n" end)
+math(EXPR end "${end} + 1")
+string(SUBSTRING "${text}" 0 ${end} text)
+file(CONFIGURE OUTPUT "${OUTPUT}" CONTENT "${text}" @ONLY)

@@ -1,0 +1,48 @@
+# Reading the tree's text without CMake's own meaning of [ ] ; and backslash getting in the way.
+
+string(ASCII 1 OPEN)
+string(ASCII 2 CLOSE)
+
+# The files of the tree that match the patterns, build folders and the like left out.
+function(project_files result)
+    set(found)
+    file(GLOB entries LIST_DIRECTORIES true "${ROOT}/*")
+    foreach(entry IN LISTS entries)
+        cmake_path(GET entry FILENAME name)
+        if(name MATCHES "^(build|out)")
+            continue()
+        endif()
+        foreach(pattern IN LISTS ARGN)
+            if(IS_DIRECTORY "${entry}")
+                file(GLOB_RECURSE files "${entry}/${pattern}")
+            else()
+                file(GLOB files "${ROOT}/${pattern}")
+            endif()
+            list(APPEND found ${files})
+        endforeach()
+    endforeach()
+    list(REMOVE_DUPLICATES found)
+    set(${result} "${found}" PARENT_SCOPE)
+endfunction()
+
+# A file's text with [ and ] as the characters OPEN and CLOSE, ; as a comma and \ as /.
+function(read_text path result)
+    file(READ "${path}" text)
+    string(REPLACE "[" "${OPEN}" text "${text}")
+    string(REPLACE "]" "${CLOSE}" text "${text}")
+    string(REPLACE ";" "," text "${text}")
+    string(REPLACE "\\" "/" text "${text}")
+    set(${result} "${text}" PARENT_SCOPE)
+endfunction()
+
+# Fails with the collected lines, or says how many things were checked; none is a failure too.
+function(conclude things count problems)
+    if(problems)
+        list(JOIN problems "\n  " lines)
+        message(FATAL_ERROR "  ${lines}")
+    endif()
+    if(count EQUAL 0)
+        message(FATAL_ERROR "found no ${things}: the search is broken")
+    endif()
+    message(STATUS "checked ${count} ${things}")
+endfunction()
