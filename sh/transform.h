@@ -18,7 +18,7 @@ namespace airlight {
 ///
 /// Analysis is exact (to rounding) for every f of band limit lmax < rows: the samples determine f
 /// on its meridians as a trigonometric polynomial, which is multiplied by |sin theta| and projected
-/// back exactly [Reinecke23], so plain sums over the rows integrate without error. Weighting
+/// back exactly [McEwen11], so plain sums over the rows integrate without error. Weighting
 /// samples with sin theta, or with Fejér's rule, would be exact only up to about rows / 2.
 ///
 /// Maps are (rows, columns, channels) with row 0 at the north pole; coefficients are
