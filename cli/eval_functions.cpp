@@ -117,6 +117,10 @@ Evaluator make_airlight(const std::string& name, EvalPrecision precision) {
 /// are powers of two, so that a row's value does not depend on its neighbours.
 class ZonalCache {
   public:
+    /// psf_zonal or psf_zonal_scaled.
+    using Function = std::vector<double> (*)(double optical_thickness, int order);
+    explicit ZonalCache(Function function) : function_(function) {}
+
     void evaluate(const std::vector<std::pair<double, double>>& rows, EvalPrecision precision,
                   std::vector<double>& values) {
         std::set<Key> wanted;
@@ -132,7 +136,7 @@ class ZonalCache {
         std::vector<std::vector<double>> computed(to_compute.size());
         parallel_blocks(to_compute.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-                computed[i] = psf_zonal(to_compute[i].first, to_compute[i].second);
+                computed[i] = function_(to_compute[i].first, to_compute[i].second);
             }
         });
         for (std::size_t i = 0; i < to_compute.size(); ++i) {
@@ -163,12 +167,14 @@ class ZonalCache {
         size_ = 0;
     }
 
+    Function function_;
     std::map<Key, std::vector<double>> cache_;
     std::size_t size_ = 0;
 };
 
 Evaluator make_zonal(bool normalised, EvalPrecision precision) {
-    const auto cache = std::make_shared<ZonalCache>();
+    // NPSF is PSF_1 e^1 / 1.
+    const auto cache = std::make_shared<ZonalCache>(normalised ? &psf_zonal_scaled : &psf_zonal);
     return [=](const std::vector<EvalArguments>& arguments, std::vector<double>& values) {
         std::vector<std::pair<double, double>> rows;
         rows.reserve(arguments.size());

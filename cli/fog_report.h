@@ -39,7 +39,11 @@ const char* method_name(const FogPlan& plan);
 /// "airlight:tolerance" where the method has one.
 std::vector<Attribute> settings_attributes(const FogRecord& record);
 
-/// {"version", "files": [{"input", "output", …}]}; docs/CLI.md lists the members.
+/// {"version", "files"}: for each file its "input", "output", "width", "height", "component",
+/// "optical_thickness" and "albedo" (of R, G, B), "phase", "psf", "method", "lmax" (null without
+/// bands), "near_radius" [rad], "tolerance", "estimated_error" (relative; null for sh, which has no
+/// bound), "seconds" {"read", "compute", "write"}, "peak_memory_bytes" of the process so far, and
+/// "notes", sentences about what was read and written.
 nlohmann::ordered_json to_json(const std::vector<FogRecord>& records);
 
 }  // namespace airlight

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// airlight ladder: the report's files, and that what it measures keeps what the plans promise.
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "medium/airlight_method.h"
+#include "tests/cli/program.h"
+#include "tests/core/scratch_directory.h"
+
+namespace airlight {
+namespace {
+
+using CsvRow = std::map<std::string, std::string>;
+
+// None of the report's fields is quoted.
+std::vector<CsvRow> read_csv(const std::string& path) {
+    std::istringstream text(read_bytes(path));
+    std::vector<std::string> header;
+    std::vector<CsvRow> rows;
+    for (std::string line; std::getline(text, line);) {
+        std::vector<std::string> fields;
+        for (std::size_t begin = 0; begin <= line.size();) {
+            const std::size_t end = std::min(line.find(',', begin), line.size());
+            fields.push_back(line.substr(begin, end - begin));
+            begin = end + 1;
+        }
+        if (header.empty()) {
+            header = fields;
+            continue;
+        }
+        EXPECT_EQ(fields.size(), header.size()) << line;
+        CsvRow row;
+        for (std::size_t i = 0; i < header.size(); ++i) row[header[i]] = fields.at(i);
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+// The page must stand alone; the name space of SVG is no address that anything loads.
+void expect_self_contained(const std::string& page) {
+    for (const char* word : {"<script", "<link", "<img", "src=", "href=", "url(", "@import"}) {
+        EXPECT_EQ(page.find(word), std::string::npos) << word;
+    }
+    EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0u);
+    EXPECT_NE(page.find("</html>"), std::string::npos);
+}
+
+TEST(Ladder, EveryFogRungKeepsItsToleranceAtAnyThreadCount) {
+    const ScratchDirectory scratch;
+    std::vector<CsvRow> first;
+    for (const std::string threads : {"1", "2"}) {
+        const std::string report = scratch / threads;
+        const Outcome outcome = run(
+            {"ladder", "fog", "--size", "128x64", "--threads", threads, "-o", report, "--json"});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+        std::vector<CsvRow> rows = read_csv(report + "/fog.csv");
+        const nlohmann::json tables = nlohmann::json::parse(outcome.out).at("tables");
+        ASSERT_EQ(tables.at("fog").size(), rows.size());
+
+        std::set<std::string> tolerances;
+        double sh_error = 10;
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const CsvRow& row = rows[i];
+            const std::string& rung = row.at("rung");
+            EXPECT_EQ(tables["fog"][i]["rung"], rung);
+            EXPECT_GT(std::stod(row.at("time_ms")), 0);
+            if (rung == "rings") continue;
+            const double error = std::stod(row.at("max_relative_error"));
+            const double rms = std::stod(row.at("rms_relative_error"));
+            EXPECT_NEAR(tables["fog"][i]["max_relative_error"], error, 1e-5 * error);
+            EXPECT_GT(error, 0) << rung;
+            EXPECT_LE(rms, error) << rung;
+            if (rung.rfind("split", 0) == 0) {
+                EXPECT_LE(error, std::stod(row.at("tolerance"))) << rung;
+                EXPECT_EQ(row.at("negative_pixels"), "0") << rung;
+                tolerances.insert(row.at("tolerance"));
+            } else if (rung.rfind("sh", 0) == 0) {
+                // More bands help the average pixel, but beside a sun all of them ring.
+                EXPECT_LT(rms, sh_error) << rung;
+                EXPECT_GT(std::stoi(row.at("negative_pixels")), 0) << rung;
+                sh_error = rms;
+            } else {
+                // The factored form is exact at T = 1 only, and the report is for T = 2.
+                EXPECT_EQ(rung, "factored psf");
+                EXPECT_GT(rms, 0.1);
+            }
+        }
+        EXPECT_EQ(tolerances, (std::set<std::string>{"0.1", "0.01", "0.001", "0.0001", "1e-05"}));
+        EXPECT_EQ(rows.back().at("rung"), "rings");
+        // Four sizes, each twice as wide as the one before, at five tolerances.
+        const std::vector<CsvRow> costs = read_csv(report + "/fog-size.csv");
+        ASSERT_EQ(costs.size(), 20u);
+        EXPECT_EQ(costs.back().at("width"), "1024");
+        EXPECT_EQ(costs.back().at("height"), "512");
+
+        for (CsvRow& row : rows) row.erase("time_ms");
+        if (first.empty()) first = rows;
+        EXPECT_EQ(rows, first);
+        const std::string page = read_bytes(report + "/index.html");
+        expect_self_contained(page);
+        for (const std::string plot : {"fog.svg", "fog-size.svg"}) {
+            const std::string svg = read_bytes(report + "/" + plot);
+            EXPECT_EQ(svg.rfind("<svg ", 0), 0u);
+            EXPECT_NE(page.find(svg), std::string::npos) << plot;
+        }
+    }
+}
+
+TEST(Ladder, AirlightReportHasEveryMethodOnBothSets) {
+    const ScratchDirectory scratch;
+    const Outcome outcome = run({"ladder", "airlight", "-o", scratch.path()});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    // As in the tests of medium/airlight_method.h, twice what was measured.
+    const std::map<std::string, double> bounds = {
+        {"sinh-gl8", 2e-3}, {"sinh-gl24", 8e-11}, {"e1", 5e-13}};
+    std::map<std::string, std::set<std::string>> sets;
+    for (const CsvRow& row : read_csv(scratch / "airlight.csv")) {
+        sets[row.at("method")].insert(row.at("set"));
+        EXPECT_GT(std::stod(row.at("ns_per_call")), 0);
+        if (row.at("method") == "exact") continue;
+        const double error = std::stod(row.at("max_relative_error"));
+        EXPECT_GT(error, 0) << row.at("method");
+        const auto bound = bounds.find(row.at("method"));
+        if (bound != bounds.end()) {
+            EXPECT_LE(error, bound->second) << bound->first;
+        }
+    }
+    const std::string plot = read_bytes(scratch / "airlight.svg");
+    for (const AirlightMethodInfo& info : kAirlightMethods) {
+        EXPECT_EQ(sets[std::string(info.name)], (std::set<std::string>{"A", "B"})) << info.name;
+        EXPECT_NE(plot.find(">" + std::string(info.name) + "</text>"), std::string::npos);
+    }
+    expect_self_contained(read_bytes(scratch / "index.html"));
+    EXPECT_FALSE(std::filesystem::exists(scratch / "fog.csv"));
+}
+
+TEST(Ladder, MistakesAndOldReportsAreRefusedBeforeAnythingIsMeasured) {
+    const ScratchDirectory scratch;
+    const std::string directory = scratch.path();
+    expect_failure({"ladder", "fog"}, 2, "the output is missing: give -o DIR");
+    expect_failure({"ladder", "clouds", "-o", directory}, 2,
+                   "unknown effect 'clouds'; it can be fog or airlight");
+    for (const char* size : {"512", "512x512", "16x8", "4096x2048", "512x256x3", "0x0"}) {
+        expect_failure({"ladder", "-o", directory, "--size", size}, 2, "--size: ");
+    }
+    expect_failure({"ladder", "-o", directory, "--optical-thickness", "0"}, 2,
+                   "--optical-thickness: '0' is not a number in (0, 50]");
+    expect_failure({"ladder", "-o", directory + "/missing/report"}, 1,
+                   "cannot be made a directory");
+
+    const std::string old = directory + "/fog.svg";
+    write_bytes(old, "old");
+    expect_failure({"ladder", "-o", directory}, 1, old);
+    expect_failure({"ladder", "-o", old}, 1, "cannot be made a directory");
+    EXPECT_EQ(read_bytes(old), "old");
+    EXPECT_FALSE(std::filesystem::exists(directory + "/index.html"));
+}
+
+}  // namespace
+}  // namespace airlight
