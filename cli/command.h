@@ -45,6 +45,7 @@ Command declare_fog(CLI::App& program);
 Command declare_info(CLI::App& program);
 Command declare_eval(CLI::App& program);
 Command declare_sheet(CLI::App& program);
+Command declare_ladder(CLI::App& program);
 
 /// Writes to standard output. Throws Error(io) when it is closed, full or a broken pipe.
 void print(const std::string& text);

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The effects of `airlight ladder`: what is measured for each, and what came out.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cli/ladder_table.h"
+#include "cli/plot.h"
+
+namespace airlight {
+
+struct LadderOptions {
+    int width = 512, height = 256;  ///< of the map on which errors of fog are measured
+    double optical_thickness = 2;   ///< of its fog; at 1 the factored form would be exact
+    bool full = false;              ///< take cost to sizes 16 times as wide instead of 8
+};
+
+/// A plot and the table of what it shows: NAME.svg and NAME.csv. Without columns there is no CSV,
+/// for another figure's table has the numbers.
+struct LadderFigure {
+    std::string name;
+    std::string text;  ///< HTML that says what was measured
+    Plot plot;
+    Table table;
+};
+
+struct LadderEffect {
+    std::string name;
+    std::string title;
+    std::vector<LadderFigure> figures;
+};
+
+/// A piece of the measuring, and about how many milliseconds it takes.
+struct LadderStep {
+    std::uint64_t weight = 1;
+    std::function<void()> run;
+};
+
+/// An effect to be measured: the steps in order, then `finish` makes what is written to
+/// those files.
+struct LadderWork {
+    std::vector<std::string> files;
+    std::vector<LadderStep> steps;
+    std::function<LadderEffect()> finish;
+};
+
+/// Fog of sun_and_sky() by every method: errors against the rings at one size, cost at several.
+LadderWork plan_fog_ladder(const LadderOptions& options);
+
+/// Airlight by every method of medium/airlight_method.h on the sets of medium/airlight_sets.h.
+LadderWork plan_airlight_ladder(const LadderOptions& options);
+
+/// Wall seconds of the fastest run of several: `least` at least, then until 0.12 s have passed.
+double fastest_seconds(int least, const std::function<void()>& run);
+
+}  // namespace airlight
