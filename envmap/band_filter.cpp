@@ -5,14 +5,13 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/constants.h"
 #include "core/parallel.h"
 #include "sh/legendre_stage.h"
 #include "sh/row_spectra.h"
 
 namespace airlight {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 double sinc(double x) {
     return std::fabs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x;

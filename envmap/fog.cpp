@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/constants.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "envmap/band_filter.h"
@@ -243,7 +244,7 @@ FogPlan plan_fog(int rows, int columns, int channels, const FogOptions& options)
             break;
         case FogMethod::rings:
             plan.estimated_error = kRingsError;
-            plan.radius = 3.14159265358979323846;
+            plan.radius = kPi;
             plan.ticks = ring_ticks;
             plan.working_bytes = 8 * channel_rows * columns;
             break;

@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/constants.h"
+#include "envmap/chord.h"
 #include "medium/psf.h"
 #include "sh/npsf.h"
 #include "sh/quadrature.h"
@@ -14,16 +16,6 @@
 
 namespace airlight {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-double angle_of(double t) {
-    return 2 * std::asin(std::min(1.0, 0.5 * std::sqrt(t)));
-}
-double squared_chord(double angle) {
-    const double half = std::sin(0.5 * angle);
-    return 4 * half * half;
-}
 
 // Angles at which a split is compared with the exact kernel: inside the near part, just past its
 // end, ten to a ripple as far as the taper lets ripples go, and up to the antipode.
@@ -126,8 +118,8 @@ std::optional<SplitKernel> make_split_kernel(double optical_thickness, int lmax,
 }
 
 RemainderTable whole_kernel(double optical_thickness) {
-    return RemainderTable([=](double t) { return psf_scaled(optical_thickness, angle_of(t)); },
-                          4.0);
+    return RemainderTable(
+        [=](double t) { return psf_scaled(optical_thickness, angle_of_squared_chord(t)); }, 4.0);
 }
 
 }  // namespace airlight

@@ -4,18 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constants.h"
+#include "envmap/chord.h"
+
 namespace airlight {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-double squared_chord(double angle) {
-    const double half = std::sin(0.5 * angle);
-    return 4 * half * half;
-}
-
-}  // namespace
-
 KernelReach::KernelReach(int rows, int columns) : rows_(rows), columns_(columns) {
     const double height = kPi / rows;
     double upper = 0;

@@ -15,11 +15,9 @@
 #include <cassert>
 #include <cmath>
 
-namespace airlight {
+#include "core/constants.h"
 
-namespace detail {
-inline constexpr double kLatLongPi = 3.14159265358979323846;
-}
+namespace airlight {
 
 /// A place in a map, 0 ≤ u < 1 from left to right, 0 ≤ v ≤ 1 from top to bottom.
 struct LatLongPoint {
@@ -34,8 +32,8 @@ struct LatLongPixel {
 
 /// The unit direction at (u, v); u is periodic, v in [0, 1]. Accurate to 4e-16 per component.
 inline std::array<double, 3> direction_of(double u, double v) {
-    const double theta = detail::kLatLongPi * v;
-    const double phi = 2 * detail::kLatLongPi * (0.5 - u);
+    const double theta = kPi * v;
+    const double phi = 2 * kPi * (0.5 - u);
     const double sin_theta = std::sin(theta);
     return {sin_theta * std::sin(phi), std::cos(theta), sin_theta * std::cos(phi)};
 }
@@ -52,8 +50,8 @@ inline LatLongPoint point_of(const std::array<double, 3>& direction) {
     assert(x != 0 || y != 0 || z != 0);
     // atan2(±0, −0) is ±π, so at the poles the sign of z's zero would choose the seam.
     const double phi = x == 0 && z == 0 ? 0 : std::atan2(x, z);
-    const double u = 0.5 - phi / (2 * detail::kLatLongPi);
-    return {u < 1 ? u : 0, std::atan2(std::hypot(x, z), y) / detail::kLatLongPi};
+    const double u = 0.5 - phi / (2 * kPi);
+    return {u < 1 ? u : 0, std::atan2(std::hypot(x, z), y) / kPi};
 }
 
 /// The pixel that holds a direction; borders belong to the pixel to the right and below.
@@ -67,7 +65,7 @@ inline LatLongPixel pixel_of(const std::array<double, 3>& direction, int width, 
 
 /// The colatitude θ of a row's centre, in radians from +Y.
 inline double row_colatitude(int row, int height) {
-    return detail::kLatLongPi * (row + 0.5) / height;
+    return kPi * (row + 0.5) / height;
 }
 
 /// The solid angle of each pixel of a row in steradians,
@@ -80,8 +78,8 @@ inline double row_colatitude(int row, int height) {
 inline double pixel_solid_angle(int row, int width, int height) {
     assert(row >= 0 && row < height && width > 0);
     const int mirrored = row < height - 1 - row ? row : height - 1 - row;
-    return 4 * detail::kLatLongPi / width * std::sin(row_colatitude(mirrored, height)) *
-           std::sin(detail::kLatLongPi / (2.0 * height));
+    return 4 * kPi / width * std::sin(row_colatitude(mirrored, height)) *
+           std::sin(kPi / (2.0 * height));
 }
 
 }  // namespace airlight

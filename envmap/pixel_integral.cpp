@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constants.h"
+#include "envmap/chord.h"
+
 namespace airlight {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Gauss-Legendre rules on [-1, 1] ([DLMF] 3.5(v)).
 struct Rule {
@@ -114,12 +115,12 @@ PixelIntegrator::RowView PixelIntegrator::view_row(int row, int j) const {
     for (const Rule& rule : kRules) {
         for (int i = 0; i < rule.nodes; ++i) {
             const double theta = centre + half * rule.node[i];
-            view.across[rule.offset + i] = 4 * square(std::sin(0.5 * (theta - view.theta_i)));
+            view.across[rule.offset + i] = squared_chord(theta - view.theta_i);
             view.sine[rule.offset + i] = std::sin(theta);
         }
     }
     const double nearest = std::clamp(view.theta_i, view.top, view.bottom);
-    view.nearest_across = 4 * square(std::sin(0.5 * (nearest - view.theta_i)));
+    view.nearest_across = squared_chord(nearest - view.theta_i);
     view.smallest_sine = std::min(std::sin(view.top), std::sin(view.bottom));
     return view;
 }
@@ -130,7 +131,7 @@ PixelIntegrator::ParallelView PixelIntegrator::view_parallel(int row, int j) con
     const double sine = pole ? 0 : std::sin(theta);
     return {theta,
             sine,
-            4 * square(std::sin(0.5 * (theta - theta_i))),
+            squared_chord(theta - theta_i),
             4 * sine * sine_i,
             std::sin(theta - theta_i),
             2 * sine_i * std::cos(theta)};
@@ -185,7 +186,7 @@ double PixelIntegrator::meridian(const RemainderTable& remainder, const RowView&
         return 0.5 * height * turn * sum;
     }
     const auto chord = [&](double theta) {
-        return 4 * square(std::sin(0.5 * (theta - view.theta_i))) + h * std::sin(theta);
+        return squared_chord(theta - view.theta_i) + h * std::sin(theta);
     };
     // The colatitude nearest the centre; over a pole where the centre lies beyond it.
     double foot = std::atan2(view.sine_i * std::cos(phi), std::cos(view.theta_i));

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/constants.h"
 #include "envmap/kernel_reach.h"
 #include "envmap/remainder_table.h"
 
@@ -66,7 +67,6 @@ class PixelIntegrator {
 template <class Visit>
 void PixelIntegrator::integrate_row(const RemainderTable& remainder, int row,
                                     const Visit& visit) const {
-    constexpr double kTwoPi = 6.28318530717958647693;
     std::vector<double> taps, upper, lower;
     const RowRange reached = reach_.rows(remainder.radius(), row);
     for (int j = reached.first; j <= reached.last; ++j) {
@@ -88,7 +88,7 @@ void PixelIntegrator::integrate_row(const RemainderTable& remainder, int row,
             taps[k] = upper[k] - lower[k] + right - left;
             left = right;
         }
-        if (j == row) taps[0] += kTwoPi * remainder.total();
+        if (j == row) taps[0] += 2 * kPi * remainder.total();
         visit(j, count, taps.data());
     }
 }

@@ -5,11 +5,12 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/constants.h"
+
 namespace airlight {
 namespace {
 
 constexpr int kNodes = 8;
-constexpr double kPi = 3.14159265358979323846;
 
 // Monomial coefficients of the polynomial through values at the Chebyshev nodes cos((i + 1/2)
 // pi/8).

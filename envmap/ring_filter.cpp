@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constants.h"
 #include "core/parallel.h"
 #include "envmap/pixel_integral.h"
 #include "envmap/tap_sum.h"
@@ -14,7 +15,6 @@ namespace airlight {
 namespace {
 
 using Complex = RingFft::Complex;
-constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kRowBlock = 32;
 
 // Nanoseconds of one thread on an AVX2 machine; only their ratios matter.

@@ -107,7 +107,7 @@ double airlight_e1(double gamma, double t_sv, double t_vp) {
 double airlight_march(double gamma, double t_sv, double t_vp, int steps) {
     assert(steps >= 1);
     const bool inside =
-        gamma > 0 && gamma <= detail::kPi && t_sv > 0 && std::isfinite(t_sv) && t_vp > 0;
+        gamma > 0 && gamma <= kPi && t_sv > 0 && std::isfinite(t_sv) && t_vp > 0;
     if (!inside) return airlight(gamma, t_sv, t_vp);
     const double sine = std::sin(0.5 * gamma);
     const double kappa = 2 * t_sv * sine * sine;
@@ -120,7 +120,7 @@ double airlight_march(double gamma, double t_sv, double t_vp, int steps) {
         const double squared = beyond * beyond + 2 * kappa * t;
         sum += std::exp(-(beyond + std::sqrt(squared))) / squared;
     }
-    const double value = sum * step * std::exp(-t_sv) / (4 * detail::kPi);
+    const double value = sum * step * std::exp(-t_sv) / (4 * kPi);
     // A step can land on the light, and squares leave the range where lengths do not.
     return std::isfinite(value) ? value : airlight(gamma, t_sv, t_vp);
 }

@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "core/constants.h"
 #include "medium/airlight.h"
 
 namespace airlight {
@@ -30,7 +31,7 @@ inline std::vector<AirlightCase> airlight_set(char name, int count) {
     std::vector<AirlightCase> cases;
     for (int i = 0; i < count; ++i) {
         AirlightCase c;
-        c.gamma = name == 'A' ? uniform(.02, 2.5) : uniform(0, 3.14159265358979323846);
+        c.gamma = name == 'A' ? uniform(.02, 2.5) : uniform(0, kPi);
         c.t_sv = uniform(0, thickest);
         c.t_vp = uniform(0, thickest);
         c.exact = airlight(c.gamma, c.t_sv, c.t_vp);

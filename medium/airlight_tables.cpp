@@ -15,7 +15,6 @@
 namespace airlight {
 namespace {
 
-using detail::kPi;
 constexpr double kThickest = 50;
 constexpr int kFallbackNodes = 8;
 

@@ -21,7 +21,7 @@ double psf_scaled(double optical_thickness, double gamma) {
     const detail::RayAngle angle = detail::ray_angle(gamma);
     const double rho = 2 * angle.cos_theta;
     const double h = detail::infinite_ray_integral(optical_thickness * rho, angle);
-    return h == 0 ? 0 : h / (2 * detail::kPi * rho);
+    return h == 0 ? 0 : h / (2 * kPi * rho);
 }
 
 double psf(double optical_thickness, double gamma) {
@@ -36,7 +36,7 @@ double psf(double optical_thickness, double gamma) {
     const detail::RayAngle angle = detail::ray_angle(gamma);
     // Halving a denormal gamma would round it away.
     const double rho = gamma < 1e-10 ? gamma : 2 * angle.cos_theta;
-    const double h = detail::infinite_ray_integral(t * rho, angle) / (2 * detail::kPi);
+    const double h = detail::infinite_ray_integral(t * rho, angle) / (2 * kPi);
     return t < 1 ? t / rho * half * half * h : half * t / rho * h * half;
 }
 

@@ -8,12 +8,13 @@
 
 #include <limits>
 
+#include "core/constants.h"
+
 namespace airlight {
 namespace detail {
 
 /// pi as a double, and the float next above it as a double: an angle in between is the pi of a
 /// caller who works in float, or who added up to it.
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kPiOfFloat = 3.1415927410125732;
 
 /// gamma with the rounded pi brought back to pi; outside [0, kPiOfFloat] and for NaN: NaN.

@@ -10,12 +10,12 @@
 #include <limits>
 #include <vector>
 
+#include "core/constants.h"
 #include "sh/index.h"
 
 namespace airlight {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kSqrt2 = 1.41421356237309504880;
 
 // Orders up to this one take the short recurrence of low_order_basis.

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <string>
 
+#include "core/constants.h"
 #include "core/error.h"
 #include "sh/quadrature.h"
 #include "sh/zonal.h"
@@ -14,7 +15,6 @@
 namespace airlight {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Points of a panel. Panels double in length away from 0, or are shorter than the distance pi to
 // the singularities of M_T: twenty points reach rounding in both.
 constexpr int kPoints = 20;

@@ -7,10 +7,11 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/constants.h"
+
 namespace airlight {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kLanes = 8;
 
 template <class Real>

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <kissfft.hh>
 
+#include "core/constants.h"
+
 namespace airlight {
 namespace {
 
@@ -13,7 +15,6 @@ using Complex = ComplexFft::Complex;
 
 // KISS FFT has butterflies for 2 … 5; its general one shares a buffer between threads.
 constexpr std::size_t kLargestDirectPrime = 5;
-constexpr double kPi = 3.14159265358979323846;
 
 std::size_t largest_prime_factor(std::size_t n) {
     std::size_t largest = 1;

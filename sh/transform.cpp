@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/constants.h"
 #include "core/error.h"
 #include "sh/legendre_stage.h"
 #include "sh/row_spectra.h"
@@ -13,7 +14,6 @@ namespace airlight {
 namespace {
 
 using Complex = RingFft::Complex;
-constexpr double kPi = 3.14159265358979323846;
 
 std::vector<double> northern_colatitudes(int rows) {
     std::vector<double> colatitude;

@@ -6,12 +6,12 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/constants.h"
 #include "sh/index.h"
 
 namespace airlight {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kLanes = 8;
 
 using Lanes = std::array<double, kLanes>;

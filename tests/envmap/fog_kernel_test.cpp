@@ -5,7 +5,9 @@
 
 #include <cmath>
 
+#include "core/constants.h"
 #include "envmap/band_filter.h"
+#include "envmap/chord.h"
 #include "envmap/pixel_integral.h"
 #include "medium/psf.h"
 #include "sh/npsf.h"
@@ -14,13 +16,6 @@
 
 namespace airlight {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-double squared_chord(double angle) {
-    const double half = std::sin(0.5 * angle);
-    return 4 * half * half;
-}
 
 TEST(SplitKernel, NearAndFarPartAddUpToThePsfWithinTheMeasuredError) {
     for (const double thickness : {0.0, 1e-8, 0.05, 1.0, 10.0, 50.0}) {

@@ -8,12 +8,11 @@
 #include <functional>
 #include <vector>
 
+#include "core/constants.h"
 #include "envmap/image.h"
 #include "medium/psf.h"
 
 namespace airlight::test {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Integral of psf(angle to the centre (theta_i, 0)) over the rectangle [t0, t1] x [p0, p1] of
 /// colatitude and azimuth: halved along its longer side until it is at most 0.4 of its distance

@@ -179,7 +179,7 @@ TEST(Fog, AllBandsOfABandLimitedMapAgreeWithTheExactConvolution) {
     Image map(columns, rows, 1);
     for (int y = 0; y < rows; ++y) {
         for (int x = 0; x < columns; ++x) {
-            map.at(y, x, 0) = static_cast<float>(1 + std::cos(test::kPi * (y + 0.5) / rows));
+            map.at(y, x, 0) = static_cast<float>(1 + std::cos(kPi * (y + 0.5) / rows));
         }
     }
     FogOptions options = options_for(1.0, 1e-3, FogMethod::sh);
@@ -187,7 +187,7 @@ TEST(Fog, AllBandsOfABandLimitedMapAgreeWithTheExactConvolution) {
     const std::vector<double> lambda = psf_eigenvalues_scaled(1.0, 2);
     for (int y = 0; y < rows; ++y) {
         const double exact =
-            std::exp(-1.0) * (lambda[0] + lambda[1] * std::cos(test::kPi * (y + 0.5) / rows));
+            std::exp(-1.0) * (lambda[0] + lambda[1] * std::cos(kPi * (y + 0.5) / rows));
         ASSERT_NEAR(fog.at(y, 5, 0), exact, 1e-6);
     }
 }

@@ -7,10 +7,11 @@
 #include <cmath>
 #include <random>
 
+#include "core/constants.h"
+
 namespace airlight {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // sin(π) and cos(π/2) in double are 1.2e-16 and 6e-17, and u, v carry a rounding of their own.
 constexpr double kRounding = 4e-16;
 

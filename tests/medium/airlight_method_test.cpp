@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 
+#include "core/constants.h"
 #include "medium/airlight_rungs.h"
 #include "medium/airlight_sets.h"
 #include "tests/medium/reference_rows.h"
@@ -17,7 +18,6 @@
 namespace airlight {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 AirlightEvaluator evaluator(AirlightMethod method) {

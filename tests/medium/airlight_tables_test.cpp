@@ -9,6 +9,7 @@
 #include <random>
 #include <utility>
 
+#include "core/constants.h"
 #include "medium/airlight.h"
 #include "medium/airlight_sets.h"
 #include "medium/psf.h"
@@ -17,7 +18,6 @@
 namespace airlight {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct TableErrors {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "core/constants.h"
 #include "medium/special_f.h"
 #include "tests/medium/reference_rows.h"
 #include "tests/medium/slow_reference.h"
@@ -15,7 +16,6 @@
 namespace airlight {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 

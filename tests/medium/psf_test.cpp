@@ -8,13 +8,13 @@
 #include <limits>
 #include <random>
 
+#include "core/constants.h"
 #include "tests/medium/reference_rows.h"
 #include "tests/medium/slow_reference.h"
 
 namespace airlight {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Measured: 1.2e-14, the cancellation of the series for E1 at gamma = pi, T = .75.

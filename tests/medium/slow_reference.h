@@ -11,7 +11,7 @@ namespace airlight {
 /// range: the excess-path integral in p + kappa = omega sinh q, 48 panels of 8-node
 /// Gauss-Legendre. Error under 1e-16.
 inline double slow_airlight_scaled(double gamma_d, double t_sv, double t_vp) {
-    constexpr long double kPi = 3.14159265358979323846264338327950288L;
+    constexpr long double pi = 3.14159265358979323846264338327950288L;
     constexpr long double kNodes[4][2] = {
         {0.1834346424956498049394761L, 0.3626837833783619829651504L},
         {0.5255324099163289858177390L, 0.3137066458778872873379622L},
@@ -45,7 +45,7 @@ inline double slow_airlight_scaled(double gamma_d, double t_sv, double t_vp) {
             }
         }
     }
-    return static_cast<double>(2 * sum * half / omega / (4 * kPi));
+    return static_cast<double>(2 * sum * half / omega / (4 * pi));
 }
 
 }  // namespace airlight

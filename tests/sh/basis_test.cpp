@@ -10,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "core/constants.h"
 #include "sh/index.h"
 #include "sh/quadrature.h"
 #include "tests/medium/reference_rows.h"
@@ -17,7 +18,6 @@
 namespace airlight {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 using Direction = std::array<double, 3>;

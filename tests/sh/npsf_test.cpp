@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "core/constants.h"
 #include "core/error.h"
 #include "medium/psf.h"
 #include "sh/quadrature.h"
@@ -16,8 +17,6 @@
 
 namespace airlight {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // npsf.h states 1e-14; measured 2.3e-15.
 constexpr double kAccuracy = 1e-14;

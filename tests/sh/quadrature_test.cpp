@@ -6,10 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/constants.h"
+
 namespace airlight {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 // The largest |sum_i w_i P_k(x_i) - int P_k| over k <= degree.

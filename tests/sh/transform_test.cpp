@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "core/constants.h"
 #include "core/error.h"
 #include "core/threads.h"
 #include "sh/basis.h"
@@ -15,8 +16,6 @@
 
 namespace airlight {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 struct Size {
     int rows, columns, lmax;

@@ -7,13 +7,13 @@
 #include <limits>
 #include <random>
 
+#include "core/constants.h"
 #include "sh/basis.h"
 #include "sh/index.h"
 
 namespace airlight {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 // Gauss-Legendre in cos(angle) over [low, 1] alone, for functions that end at cos(angle) = low.
