@@ -105,9 +105,9 @@ double split_radius(int lmax, double tolerance) {
 std::optional<SplitKernel> make_split_kernel(double optical_thickness, int lmax, double tolerance) {
     Tails tails = tails_for(tolerance);
     // A dense medium damps the kernel away from its peak, so that the tails weigh more.
-    // alpha = lmax / (2 b); below sqrt(T) the near part would not fall off.
+    // With alpha = lmax / (2 b) the near part falls off like exp(-(alpha^2 - T/2) s^2).
     while (2 * tails.a * tails.b / lmax < 1 &&
-           lmax * lmax > 4 * tails.b * tails.b * optical_thickness) {
+           lmax * lmax > 2.2 * tails.b * tails.b * optical_thickness) {
         SplitKernel split = build(optical_thickness, lmax, tails);
         if (split.error <= tolerance) return split;
         const double grow = split.error > 4 * tolerance ? 1.08 : 1.03;
