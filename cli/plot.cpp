@@ -150,6 +150,13 @@ void draw_legend(std::string& svg, const Plot& plot) {
     }
 }
 
+std::string without_trailing_zeros(std::string number) {
+    if (number.find('.') == std::string::npos) return number;
+    number.erase(number.find_last_not_of('0') + 1);
+    if (number.back() == '.') number.pop_back();
+    return number;
+}
+
 }  // namespace
 
 std::string xml_escaped(const std::string& text) {
@@ -180,22 +187,14 @@ std::string short_number(double value, int digits) {
     if (value == 0 || (size >= 1e-2 && size < 1e5)) {
         // As many decimals as the digits need, without an exponent for 210 or 21000.
         const int exponent = value == 0 ? 0 : static_cast<int>(std::floor(std::log10(size)));
-        std::string text = fmt::format("{:.{}f}", value, std::max(0, digits - 1 - exponent));
-        if (text.find('.') != std::string::npos) {
-            text.erase(text.find_last_not_of('0') + 1);
-            if (text.back() == '.') text.pop_back();
-        }
-        return text;
+        return without_trailing_zeros(
+            fmt::format("{:.{}f}", value, std::max(0, digits - 1 - exponent)));
     }
-    std::string text = fmt::format("{:.{}e}", value, digits - 1);
-    // "e-05" becomes "e-5", "e+09" becomes "e9".
+    const std::string text = fmt::format("{:.{}e}", value, digits - 1);
     const std::size_t e = text.find('e');
     if (e == std::string::npos) return text;
-    std::size_t first = e + 1;
-    if (text[first] == '+') text.erase(first, 1);
-    if (text[first] == '-') ++first;
-    while (text[first] == '0' && first + 1 < text.size()) text.erase(first, 1);
-    return text;
+    return fmt::format("{}e{}", without_trailing_zeros(text.substr(0, e)),
+                       std::stoi(text.substr(e + 1)));
 }
 
 std::string to_svg(const Plot& plot) {
