@@ -91,7 +91,7 @@ std::vector<double> row_average_filter(int rows, int degree) {
     const double end = std::max(0.5 * kPi, kPi * degree / rows);
     for (int taps = 6;; ++taps) {
         std::vector<double> response = fit_response(end, taps);
-        if (worst_response_error(response, end) < 1e-9 || taps == 40) {
+        if (worst_response_error(response, end) < 1e-11 || taps == 60) {
             for (std::size_t k = 1; k < response.size(); ++k) response[k] *= 0.5;
             return response;
         }

@@ -22,7 +22,7 @@ struct BandKernel {
 /// Exact for the piecewise constant map: a pixel's integral over phi is the factor sinc(m pi / W)
 /// of its ring's Fourier coefficients; over theta the harmonics times sin(theta) are trigonometric
 /// polynomials of degree lmax + 1, for which a short symmetric filter across rows gives the
-/// integral from the values at row centres (relative error below 1e-9). Cost and memory as for
+/// integral from the values at row centres (relative error below 1e-11). Cost and memory as for
 /// sh/transform.h, with one pass up and one down in the Legendre functions.
 void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels, Image& out,
                        Progress* progress);

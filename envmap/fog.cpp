@@ -95,7 +95,7 @@ void choose_split(FogPlan& plan) {
             std::optional<SplitKernel> split = make_split_kernel(group.shape, lmax, plan.tolerance);
             reached = reached && split.has_value();
             if (!reached) break;
-            plan.estimated_error = std::max(plan.estimated_error, split->error + kRingsError);
+            plan.estimated_error = std::max(plan.estimated_error, split->error);
             plan.radius = std::max(plan.radius, split->radius);
             group.split = std::make_shared<const SplitKernel>(std::move(*split));
         }
@@ -213,7 +213,7 @@ FogPlan plan_fog(int rows, int columns, int channels, const FogOptions& options)
                     fmt::format("tolerance {} is not in [{}, 1)", options.tolerance, kRingsError));
     }
     plan.method = options.method;
-    plan.tolerance = std::clamp(options.tolerance, kFinestSplit, 0.1) - kRingsError;
+    plan.tolerance = std::clamp(options.tolerance, kFinestSplit, 0.1);
     plan.groups = kernel_groups(plan);
     if (plan.groups.empty()) return plan;
 

@@ -41,6 +41,10 @@ double taper(int l, int lmax) {
     return 0.5 * (1 + std::cos(kPi * (l - first + 0.5) / width));
 }
 
+// What pixel integrals and sums in float add, relative to the near part. In a dense medium that
+// part is larger than the kernel itself, since it falls off more slowly.
+constexpr double kArithmeticError = 1e-6;
+
 // The two tails, erfc(a) at the near part's end and about erfc(b) beyond the last band, for one
 // tolerance on their sum.
 struct Tails {
@@ -77,7 +81,8 @@ SplitKernel build(double thickness, int lmax, Tails tails) {
         const double t = squared_chord(angles[i]);
         const double near = t < radius * radius ? scale * near_kernel(thickness, alpha, t) : 0.0;
         const double exact = psf_scaled(thickness, angles[i]);
-        const double error = std::fabs(near + smooth[i] - exact) / exact;
+        const double rounding = kArithmeticError * std::max(1.0, std::fabs(near) / exact);
+        const double error = std::fabs(near + smooth[i] - exact) / exact + rounding;
         assert(std::isfinite(error));
         split.error = std::max(split.error, error);
     }

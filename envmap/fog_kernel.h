@@ -29,7 +29,9 @@ struct SplitKernel {
     double radius = 0;                ///< of the near part, chord length
     std::vector<double> eigenvalues;  ///< lambda_l of the far part, l = 0 … lmax
     RemainderTable near;              ///< energy of the near part beyond an angle
-    double error = 0;  ///< largest relative error of near + far against the exact kernel, measured
+    /// Largest relative error of near + far against the exact kernel, measured, and what the
+    /// arithmetic of pixels adds.
+    double error = 0;
 
     int lmax() const { return static_cast<int>(eigenvalues.size()) - 1; }
 };

@@ -117,7 +117,7 @@ TEST(RowAverageFilter, AveragesHarmonicsOverARow) {
             double response = taps[0];
             for (std::size_t n = 1; n < taps.size(); ++n) response += 2 * taps[n] * std::cos(n * x);
             const double exact = k == 0 ? 1 : std::sin(0.5 * x) / (0.5 * x);
-            EXPECT_NEAR(response, exact, 2e-9) << rows << ' ' << degree << ' ' << k;
+            EXPECT_NEAR(response, exact, 2e-11) << rows << ' ' << degree << ' ' << k;
         }
     }
 }
