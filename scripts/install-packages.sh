@@ -53,7 +53,8 @@ if ! command -v apt-get >/dev/null || ! command -v ${as_root:-true} >/dev/null; 
     exit 1
 fi
 quiet_apt() {
-    $as_root env DEBIAN_FRONTEND=noninteractive DEBCONF_NOWARNINGS=yes apt-get -qq -o Dpkg::Use-Pty=0 "$@" >/dev/null
+    $as_root env DEBIAN_FRONTEND=noninteractive DEBCONF_NOWARNINGS=yes \
+        apt-get -qq -o Dpkg::Use-Pty=0 "$@" >/dev/null
 }
 
 if [ -n "$needed" ]; then

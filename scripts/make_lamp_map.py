@@ -4,10 +4,10 @@
 
 Usage: make_lamp_map.py OUTPUT.exr
 
-The viewer stands in a box of painted walls with a chequered floor, a window onto the evening sky and
-five lamps of radiance 200 to 3000. Walls are Lambertian and lit by the lamps alone, plus a constant
-for what bounces. Needs nothing beyond Python's own library. The file is the same on every machine:
-half pixels, rounded to 7 bits so that they compress, ZIP.
+The viewer stands in a box of painted walls with a chequered floor, a window onto the evening sky
+and five lamps of radiance 200 to 3000. Walls are Lambertian and lit by the lamps alone, plus a
+constant for what bounces. Needs nothing beyond Python's own library. Pixels are halves rounded to
+7 bits, so that they compress, in ZIP.
 """
 import math
 import struct
