@@ -53,7 +53,11 @@ LadderWork plan_fog_ladder(const LadderOptions& options);
 /// Airlight by every method of medium/airlight_method.h on the sets of medium/airlight_sets.h.
 LadderWork plan_airlight_ladder(const LadderOptions& options);
 
-/// Wall seconds of the fastest run of several: `least` at least, then until 0.12 s have passed.
-double fastest_seconds(int least, const std::function<void()>& run);
+/// Which time a measurement is of. CPU time hardly depends on what else the machine does, and where
+/// one thread does all the work it is the wall time of an idle machine.
+enum class TimeKind { wall, cpu };
+
+/// Seconds of the fastest run of several: `least` at least, then until 0.12 s have passed.
+double fastest_seconds(int least, TimeKind kind, const std::function<void()>& run);
 
 }  // namespace airlight

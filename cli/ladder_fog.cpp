@@ -10,6 +10,7 @@
 
 #include "cli/ladder_effects.h"
 #include "cli/ladder_map.h"
+#include "core/threads.h"
 #include "envmap/fog.h"
 
 namespace airlight {
@@ -47,6 +48,15 @@ struct FogMeasurements {
     std::vector<Rung> rungs;
     std::vector<Cost> costs;
 };
+
+TimeKind time_kind() {
+    return thread_count() == 1 ? TimeKind::cpu : TimeKind::wall;
+}
+
+std::string time_name() {
+    const int threads = thread_count();
+    return threads == 1 ? "CPU time" : fmt::format("wall time, {} threads", threads);
+}
 
 std::string tolerance_name(double tolerance) {
     return fmt::format("1e{}", std::lround(std::log10(tolerance)));
@@ -104,7 +114,7 @@ void measure_rung(FogMeasurements& fog, std::size_t index) {
     Rung& rung = fog.rungs[index];
     if (fog.map.width == 0) fog.map = sun_and_sky(fog.options.width, fog.options.height);
     Image image;
-    rung.seconds = fastest_seconds(rung.kind == Kind::rings ? 1 : 3, [&] {
+    rung.seconds = fastest_seconds(rung.kind == Kind::rings ? 1 : 3, time_kind(), [&] {
         rung.plan = plan_fog(fog.map.height, fog.map.width, fog.map.channels, rung.options);
         image = scattered_light(fog.map, rung.plan);
     });
@@ -122,7 +132,7 @@ void measure_cost(FogMeasurements& fog, std::size_t index) {
     options.optical_thickness = {fog.options.optical_thickness};
     options.method = FogMethod::split;
     options.tolerance = cost.tolerance;
-    cost.seconds = fastest_seconds(2, [&] {
+    cost.seconds = fastest_seconds(2, time_kind(), [&] {
         cost.plan = plan_fog(fog.map.height, fog.map.width, fog.map.channels, options);
         scattered_light(fog.map, cost.plan);
     });
@@ -145,16 +155,17 @@ LadderFigure error_figure(const FogMeasurements& fog) {
         "sun of 10⁵ in one pixel. The error of a pixel is relative to its own value by the method "
         "<code>rings</code>, which sums exact integrals over every pixel of the map; its own bound "
         "is 1e-6. Dots are the largest error over all pixels and channels, bars lead down to the "
-        "root mean square. Time is the fastest of several runs, planning included. "
+        "root mean square. Times are those of the fastest of several runs ({3}), planning "
+        "included. "
         "<code>split</code> is named with the tolerance asked. <code>factored psf</code> is the "
         "split at 1e-4 with T·e<sup>−T</sup>·NPSF in place of the exact point spread "
         "function.</p>",
-        fog.options.width, fog.options.height, fog.options.optical_thickness);
+        fog.options.width, fog.options.height, fog.options.optical_thickness, time_name());
     figure.plot.title = "Fog of an environment map: error against time";
     figure.plot.subtitle = fmt::format(
         "{} × {} RGB, T = {}, soft sky and a one-pixel sun of 10⁵; down and left is better",
         fog.options.width, fog.options.height, fog.options.optical_thickness);
-    figure.plot.x.label = "time per map [ms]";
+    figure.plot.x.label = time_name() + " [ms per map]";
     figure.plot.y.label = "relative error of a pixel: largest (dot), RMS (bar end)";
     figure.plot.series = {{"sh, by order", kPlotColours[1], true, {}},
                           {"factored psf", kPlotColours[3], false, {}},
@@ -207,7 +218,7 @@ LadderFigure cost_figure(const FogMeasurements& fog) {
     figure.plot.subtitle =
         fmt::format("split, RGB, T = {}, one line per tolerance", fog.options.optical_thickness);
     figure.plot.x.label = "size of the map [pixels]";
-    figure.plot.y.label = "time per pixel [ns]";
+    figure.plot.y.label = time_name() + " [ns per pixel]";
     figure.table.columns = {{"width", "width"},
                             {"height", "height"},
                             {"tolerance", "tolerance asked"},
