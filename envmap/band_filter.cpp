@@ -111,7 +111,7 @@ void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels,
         if (progress && channel == 0) progress->tick();
     });
 
-    std::vector<double> colatitude, weight(rows), ones(rows, 1.0);
+    std::vector<double> colatitude, weight(rows);
     for (std::size_t row = (rows + 1) / 2; row-- > 0;)
         colatitude.push_back(kPi * (row + 0.5) / rows);
     for (std::size_t row = 0; row < rows; ++row) {

@@ -96,7 +96,7 @@ void choose_split(FogPlan& plan) {
             reached = reached && split.has_value();
             if (!reached) break;
             plan.estimated_error = std::max(plan.estimated_error, split->error);
-            plan.radius = std::max(plan.radius, split->radius);
+            plan.radius = std::max(plan.radius, 2 * std::asin(0.5 * split->radius));
             group.split = std::make_shared<const SplitKernel>(std::move(*split));
         }
         if (reached) {
@@ -211,6 +211,11 @@ FogPlan plan_fog(int rows, int columns, int channels, const FogOptions& options)
     if (!(options.tolerance >= kRingsError && options.tolerance < 1)) {
         throw Error(ErrorCode::usage,
                     fmt::format("tolerance {} is not in [{}, 1)", options.tolerance, kRingsError));
+    }
+    if (options.method == FogMethod::split && options.tolerance < kFinestSplit) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("tolerance {} is below what method split reaches, {}: use rings",
+                                options.tolerance, kFinestSplit));
     }
     plan.method = options.method;
     plan.tolerance = std::clamp(options.tolerance, kFinestSplit, 0.1);

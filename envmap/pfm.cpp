@@ -26,14 +26,19 @@ constexpr std::uint64_t kLargestSide = 2147483647;
     throw Error(ErrorCode::data, "is corrupt: its .pfm header is malformed", file.name());
 }
 
-// The next word and the one white-space character behind it.
+// The next word and the one line end or white-space character behind it.
 std::string next_word(const std::string& text, std::size_t& position, const InputFile& file) {
     const auto is_space = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
     while (position < text.size() && is_space(text[position])) ++position;
     const std::size_t begin = position;
     while (position < text.size() && !is_space(text[position])) ++position;
     if (position == begin || position == text.size()) malformed(file);
-    return text.substr(begin, position++ - begin);
+    const std::string word = text.substr(begin, position - begin);
+    // A carriage return and its line feed end one line together.
+    if (text[position] == '\r' && position + 1 < text.size() && text[position + 1] == '\n')
+        ++position;
+    ++position;
+    return word;
 }
 
 std::uint64_t side(const std::string& word, const InputFile& file) {

@@ -29,7 +29,7 @@ struct RowCost {
 };
 
 // Cost of output row `row` and its mirror image by either way.
-RowCost row_cost(const KernelReach& reach, int channels, double radius, int row) {
+RowCost row_cost(const KernelReach& reach, double channels, double radius, int row) {
     const int columns = reach.column_count();
     RowCost cost;
     const RowRange reached = reach.rows(radius, row);
@@ -80,7 +80,17 @@ class WrappedRows {
                 }
             }
         }
+        // Sums of the largest floats would overflow on the way.
+        float largest = 0;
+        for (const float value : values_) largest = std::max(largest, std::fabs(value));
+        if (largest > 1e36f) {
+            scale_ = 1024;
+            for (float& value : values_) value /= 1024;
+        }
     }
+
+    /// The factor that undoes the scaling.
+    double scale() const { return scale_; }
 
     const float* ring(int row, std::size_t channel) const {
         return values_.data() + stride_ * ((row - first_) * channels_ + channel) + pad_;
@@ -90,12 +100,13 @@ class WrappedRows {
     int first_;
     std::size_t channels_, pad_, stride_;
     std::vector<float> values_;
+    double scale_ = 1;
 };
 
 void add_row(Image& out, const RingKernel& kernel, int row, std::size_t channel,
-             const float* values) {
+             const float* values, double scale) {
     float* pixel = out.row(row) + kernel.channels[channel];
-    const double amplitude = kernel.amplitude[channel];
+    const double amplitude = scale * kernel.amplitude[channel];
     for (int x = 0; x < out.width; ++x, pixel += out.channels) {
         *pixel = static_cast<float>(*pixel + amplitude * values[x]);
     }
@@ -178,7 +189,8 @@ void add_direct_rows(const Image& map, const RingKernel& kernel, const PixelInte
                 for (int side = 0; side < count; ++side) {
                     const int mirror = rows - 1 - row - side;
                     if (mirrored && mirror == row + side) continue;
-                    add_row(out, kernel, mirrored ? mirror : row + side, c, sums[side].data());
+                    add_row(out, kernel, mirrored ? mirror : row + side, c, sums[side].data(),
+                            (mirrored ? south : north).scale());
                 }
             }
         }
@@ -298,7 +310,7 @@ double ring_filter_cost(const KernelReach& reach, int channels, int kernels, dou
     double cost = 0;
     for (int row = 0; row < north;) {
         const int step = std::min(north - row, 1 + row / 8);
-        const RowCost one = row_cost(reach, channels / kernels, radius, row);
+        const RowCost one = row_cost(reach, static_cast<double>(channels) / kernels, radius, row);
         cost += step * (one.fits ? std::min(one.direct, one.ring) : one.ring);
         row += step;
     }

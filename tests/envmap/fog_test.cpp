@@ -235,6 +235,17 @@ TEST(Fog, ExtremeRadianceNeitherOverflowsNorVanishes) {
     for (const float value : fog.pixels) ASSERT_TRUE(std::isfinite(value) && value > 0);
 }
 
+TEST(Fog, TheLargestFloatsDoNotOverflowInSums) {
+    Image map(256, 128, 1);
+    std::fill(map.pixels.begin(), map.pixels.end(), 2e38f);
+    const FogPlan plan = plan_fog(128, 256, 1, options_for(1, 1e-3));
+    ASSERT_EQ(plan.method, FogMethod::split);
+    const double energy = std::exp(-1.0) * psf_eigenvalues_scaled(1.0, 1)[0];
+    for (const float value : scattered_light(map, plan).pixels) {
+        ASSERT_NEAR(value / (energy * 2e38), 1, 1e-6);
+    }
+}
+
 TEST(Fog, ThickMediaUnderflowToBlackWithoutNoise) {
     const Image map = test_map(32, 16);
     for (const double thickness : {200.0, 700.0, 1e4, 1e300}) {
@@ -292,6 +303,7 @@ TEST(Fog, OptionsOutsideTheirDomainAreUsageErrors) {
     for (const double bad : {0.0, 1.0, -1.0, nan, 1e-9}) {
         EXPECT_EQ(code_of(options_for(1, bad)), ErrorCode::usage) << bad;
     }
+    EXPECT_EQ(code_of(options_for(1, 2e-6, FogMethod::split)), ErrorCode::usage);
     FogOptions two;
     two.optical_thickness = {1, 2};
     EXPECT_EQ(code_of(two), ErrorCode::usage);

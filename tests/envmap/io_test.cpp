@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "core/error.h"
 #include "tests/envmap/image_files.h"
@@ -229,6 +230,17 @@ TEST(ReadImage, TakesStandardInputWithinTheLimit) {
     small.max_memory = 4096;
     EXPECT_EQ(read_redirected(small).second,
               "standard input: holds more than the limit of 4 KiB (--max-memory)");
+}
+
+TEST(Reading, PfmHeadersMayEndTheirLinesAsWindowsDoes) {
+    const ScratchDirectory directory;
+    Image map = make_map(8, 4);
+    std::string bytes = "PF\r\n8 4\r\n-1.0\r\n";
+    for (int row = map.height - 1; row >= 0; --row) {
+        bytes.append(reinterpret_cast<const char*>(map.row(row)), 8 * 3 * sizeof(float));
+    }
+    std::ofstream(directory / "crlf.pfm", std::ios::binary) << bytes;
+    EXPECT_EQ(read_image(directory / "crlf.pfm").pixels, map.pixels);
 }
 
 }  // namespace
