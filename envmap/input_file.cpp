@@ -93,8 +93,8 @@ void InputFile::spool(std::size_t max_memory) {
             throw Error(ErrorCode::io, "cannot be read: " + system_message(errno), name_);
         }
         if (got == 0) break;
-        // What is no image is not worth a copy.
-        if (size_ == 0) recognise({block.data(), static_cast<std::size_t>(got)}, name_);
+        // What is no image is not worth a copy. A pipe may begin with less than a format's mark.
+        if (size_ == 0 && got >= 4) recognise({block.data(), static_cast<std::size_t>(got)}, name_);
         size_ += static_cast<std::size_t>(got);
         if (size_ > max_memory) {
             throw Error(
