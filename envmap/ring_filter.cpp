@@ -61,36 +61,30 @@ int ring_rows(const KernelReach& reach, int channels, double radius) {
 // Input rows of the channels at hand, each channel a ring wrapped round on both sides.
 class WrappedRows {
   public:
+    // Values are divided by `scale`.
     WrappedRows(const Image& map, const std::vector<int>& channels, int first, int last,
-                std::size_t pad)
+                std::size_t pad, float scale)
         : first_(first),
           channels_(channels.size()),
           pad_(pad),
           stride_(map.width + 2 * pad + kTapSlack),
           values_(stride_ * channels_ * (last - first + 1)) {
         const int width = map.width;
+        const float inverse = 1 / scale;
         for (int row = first; row <= last; ++row) {
             const float* in = map.row(row);
             for (std::size_t c = 0; c < channels_; ++c) {
                 float* ring = values_.data() + stride_ * ((row - first) * channels_ + c);
-                for (int x = 0; x < width; ++x) ring[pad + x] = in[x * map.channels + channels[c]];
+                for (int x = 0; x < width; ++x) {
+                    ring[pad + x] = in[x * map.channels + channels[c]] * inverse;
+                }
                 for (std::size_t k = 0; k < pad; ++k) {
                     ring[pad - 1 - k] = ring[pad + width - 1 - k];
                     ring[pad + width + k] = ring[pad + k];
                 }
             }
         }
-        // Sums of the largest floats would overflow on the way.
-        float largest = 0;
-        for (const float value : values_) largest = std::max(largest, std::fabs(value));
-        if (largest > 1e36f) {
-            scale_ = 1024;
-            for (float& value : values_) value /= 1024;
-        }
     }
-
-    /// The factor that undoes the scaling.
-    double scale() const { return scale_; }
 
     const float* ring(int row, std::size_t channel) const {
         return values_.data() + stride_ * ((row - first_) * channels_ + channel) + pad_;
@@ -100,7 +94,6 @@ class WrappedRows {
     int first_;
     std::size_t channels_, pad_, stride_;
     std::vector<float> values_;
-    double scale_ = 1;
 };
 
 void add_row(Image& out, const RingKernel& kernel, int row, std::size_t channel,
@@ -154,9 +147,22 @@ class TapPair {
     std::vector<float> taps_;
 };
 
+bool holds_huge_values(const Image& map) {
+    return ordered_reduce<int>(
+               map.pixels.size(), std::size_t{1} << 16, 0,
+               [&](std::size_t begin, std::size_t end) {
+                   int huge = 0;
+                   for (std::size_t i = begin; i < end; ++i) {
+                       huge |= std::fabs(map.pixels[i]) > 1e36f;
+                   }
+                   return huge;
+               },
+               [](int& any, int part) { any |= part; }) != 0;
+}
+
 // Rows [begin, end) of the northern hemisphere and their mirror images, by direct sums.
 void add_direct_rows(const Image& map, const RingKernel& kernel, const PixelIntegrator& pixels,
-                     int begin, int end, Image& out) {
+                     int begin, int end, float scale, Image& out) {
     const int rows = map.height;
     const double radius = kernel.remainder->radius();
     const KernelReach& reach = pixels.reach();
@@ -167,9 +173,9 @@ void add_direct_rows(const Image& map, const RingKernel& kernel, const PixelInte
             pad = std::max(pad, reach.columns(radius, row, j));
         }
     }
-    const WrappedRows north(map, kernel.channels, range.first, range.last, pad);
+    const WrappedRows north(map, kernel.channels, range.first, range.last, pad, scale);
     const WrappedRows south(map, kernel.channels, rows - 1 - range.last, rows - 1 - range.first,
-                            pad);
+                            pad, scale);
     TapPair taps;
     std::vector<TapRow> tap_rows;
     std::vector<float> sums[2];
@@ -190,7 +196,7 @@ void add_direct_rows(const Image& map, const RingKernel& kernel, const PixelInte
                     const int mirror = rows - 1 - row - side;
                     if (mirrored && mirror == row + side) continue;
                     add_row(out, kernel, mirrored ? mirror : row + side, c, sums[side].data(),
-                            (mirrored ? south : north).scale());
+                            scale);
                 }
             }
         }
@@ -281,6 +287,8 @@ void add_ring_row(const RingKernel& kernel, const PixelIntegrator& pixels, const
 
 void add_ring_filter(const Image& map, const std::vector<RingKernel>& kernels, Image& out,
                      Progress* progress) {
+    // Float sums of values near the largest float would overflow on the way.
+    const float scale = holds_huge_values(map) ? 1024.0f : 1.0f;
     const PixelIntegrator pixels(map.height, map.width);
     const int north = (map.height + 1) / 2;
     for (const RingKernel& kernel : kernels) {
@@ -298,7 +306,7 @@ void add_ring_filter(const Image& map, const std::vector<RingKernel>& kernels, I
         }
         parallel_blocks(north - rings, kRowBlock, [&](std::size_t begin, std::size_t end) {
             add_direct_rows(map, kernel, pixels, rings + static_cast<int>(begin),
-                            rings + static_cast<int>(end), out);
+                            rings + static_cast<int>(end), scale, out);
             if (progress) progress->tick(end - begin);
         });
     }
