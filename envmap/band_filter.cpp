@@ -111,13 +111,11 @@ void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels,
         if (progress && channel == 0) progress->tick();
     });
 
-    std::vector<double> colatitude, weight(rows);
-    for (std::size_t row = (rows + 1) / 2; row-- > 0;)
-        colatitude.push_back(kPi * (row + 0.5) / rows);
+    std::vector<double> weight(rows);
     for (std::size_t row = 0; row < rows; ++row) {
         weight[row] = std::sin(kPi * (std::min(row, rows - 1 - row) + 0.5) / rows);
     }
-    const LegendreStage legendre(colatitude, lmax);
+    const LegendreStage legendre(northern_colatitudes(rows), lmax);
     const std::vector<double> taps = row_average_filter(map.height, lmax + 2);
     const std::size_t padded = legendre.padded_rows(), components = spectra.components();
     parallel_blocks(static_cast<std::size_t>(lmax) + 1, 4, [&](std::size_t m0, std::size_t m1) {

@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sh/row_spectra.h"
 
+#include "core/constants.h"
+
 namespace airlight {
+
+std::vector<double> northern_colatitudes(std::size_t rows) {
+    std::vector<double> colatitude;
+    for (std::size_t row = (rows + 1) / 2; row-- > 0;) {
+        colatitude.push_back(kPi * (row + 0.5) / rows);
+    }
+    return colatitude;
+}
 
 void fold_rows(const double* values, const double* weight, std::size_t rows, std::size_t padded,
                double* even, double* odd) {

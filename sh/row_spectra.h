@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "core/parallel.h"
 #include "sh/aligned.h"
@@ -49,6 +50,10 @@ class RowSpectra {
     std::size_t rows_, orders_, channels_;
     AlignedVector<double> data_;
 };
+
+/// The colatitudes of the northern pixel-centre rows, nearest the equator first: the order of folded
+/// rows, and what LegendreStage is built from.
+std::vector<double> northern_colatitudes(std::size_t rows);
 
 /// Folds rows about the equator for LegendreStage: even = north + south, odd = north - south, each
 /// times weight[row], nearest the equator first; the row on the equator of an odd count goes into

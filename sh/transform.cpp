@@ -15,13 +15,6 @@ namespace {
 
 using Complex = RingFft::Complex;
 
-std::vector<double> northern_colatitudes(int rows) {
-    std::vector<double> colatitude;
-    for (int row = (rows + 1) / 2 - 1; row >= 0; --row)
-        colatitude.push_back(kPi * (row + 0.5) / rows);
-    return colatitude;
-}
-
 Complex unit(double angle) {
     return {std::cos(angle), std::sin(angle)};
 }
