@@ -64,7 +64,7 @@ std::optional<double> parse_double(std::string_view text) {
 }
 
 bool contains(const EvalColumn& column, double value) {
-    return value >= 0 && value <= column.high && !(column.finite && std::isinf(value)) &&
+    return value >= column.low && value <= column.high && !(column.finite && std::isinf(value)) &&
            !(column.integer && value != std::floor(value));
 }
 
@@ -223,8 +223,7 @@ void run_eval(const EvalRequest& request) {
                                 list_choices(function->methods)),
                     "--method");
     }
-    evaluate_stream(*function, make_evaluator(*function, method, request.precision),
-                    request.precision);
+    evaluate_stream(*function, function->make(method, request.precision), request.precision);
 }
 
 std::string function_list() {

@@ -12,14 +12,20 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// 2 sin(gamma / 2); halving a denormal gamma would round it away.
+double chord(double gamma, const detail::RayAngle& angle) {
+    return gamma < 1e-10 ? gamma : 2 * angle.cos_theta;
+}
+
 }  // namespace
 
 double psf_scaled(double optical_thickness, double gamma) {
     gamma = detail::checked_angle(gamma);
     if (!(gamma >= 0 && optical_thickness >= 0)) return kNan;
     if (gamma == 0) return kInfinity;
+    if (std::isinf(optical_thickness)) return 0;
     const detail::RayAngle angle = detail::ray_angle(gamma);
-    const double rho = 2 * angle.cos_theta;
+    const double rho = chord(gamma, angle);
     const double h = detail::infinite_ray_integral(optical_thickness * rho, angle);
     return h == 0 ? 0 : h / (2 * kPi * rho);
 }
@@ -34,8 +40,7 @@ double psf(double optical_thickness, double gamma) {
     const double half = std::exp(-0.5 * t);
     if (half == 0) return 0;
     const detail::RayAngle angle = detail::ray_angle(gamma);
-    // Halving a denormal gamma would round it away.
-    const double rho = gamma < 1e-10 ? gamma : 2 * angle.cos_theta;
+    const double rho = chord(gamma, angle);
     const double h = detail::infinite_ray_integral(t * rho, angle) / (2 * kPi);
     return t < 1 ? t / rho * half * half * h : half * t / rho * h * half;
 }

@@ -2,6 +2,7 @@
 // The triangle of viewer, light and end of the ray, reduced to the variables of the ray integral.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -35,7 +36,8 @@ RayTriangle<Real> ray_triangle(Real gamma, Real t_sv, Real t_vp) {
     r.sin_theta = std::cos(gamma / 2);
     // Halving a denormal gamma would round it away.
     r.rho = gamma < Real(1e-10) ? gamma : 2 * r.cos_theta;
-    r.y = r.rho * t_sv;
+    // An infinite y would meet X = 0.
+    r.y = std::min(r.rho * t_sv, std::numeric_limits<Real>::max());
     r.ends_near = false;
     r.x_per_rho = 0;
     r.x_end = std::numeric_limits<Real>::infinity();
