@@ -5,200 +5,133 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
-#include <system_error>
 
 #include "cli/command.h"
 #include "cli/csv.h"
+#include "cli/eval_check.h"
 #include "cli/eval_functions.h"
+#include "cli/eval_table.h"
 #include "cli/numbers.h"
 #include "core/error.h"
-#include "core/parallel.h"
 
 namespace airlight {
 namespace {
-
-constexpr const char* kInput = "standard input";
-constexpr const char* kValue = "value";
-constexpr std::size_t kRowsPerTask = 1024;
 
 struct EvalRequest {
     std::string function;
     std::string method;
     EvalPrecision precision = EvalPrecision::double_precision;
     bool tolerance = false;
+    bool list = false;
+    std::string check;  ///< the column to compare with; empty for none
 };
-
-/// Where the function's columns lie in the input.
-struct Header {
-    std::vector<std::size_t> columns;
-    std::size_t fields = 0;
-};
-
-/// A block of rows on the way through. A row with a reason has no value.
-struct Rows {
-    std::vector<EvalArguments> arguments;
-    std::vector<std::string> reasons;
-    std::vector<std::size_t> missing_fields;
-    std::vector<double> values;
-};
-
-// "inf" and "nan" count as numbers; what underflows is 0 or denormal, what overflows is refused.
-std::optional<double> parse_double(std::string_view text) {
-    if (!text.empty() && text[0] == '+') text.remove_prefix(1);
-    if (text.empty() || text[0] == '+') return std::nullopt;
-    double value = 0;
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (stop != text.data() + text.size()) return std::nullopt;
-    if (error == std::errc::result_out_of_range) {
-        value = std::strtod(std::string(text).c_str(), nullptr);
-        if (std::isinf(value)) return std::nullopt;
-    } else if (error != std::errc()) {
-        return std::nullopt;
-    }
-    return value;
-}
-
-bool contains(const EvalColumn& column, double value) {
-    return value >= column.low && value <= column.high && !(column.finite && std::isinf(value)) &&
-           !(column.integer && value != std::floor(value));
-}
-
-Header read_header(const CsvRecord& record, const EvalFunction& function) {
-    const std::vector<std::string> names = csv_fields(record.text);
-    const std::string where = fmt::format("{}:{}", kInput, record.line);
-    Header header;
-    header.fields = names.size();
-    if (std::count(names.begin(), names.end(), kValue) > 0) {
-        throw Error(ErrorCode::data, "has a column named value already", where);
-    }
-    for (const EvalColumn& column : function.columns) {
-        const auto found = std::find(names.begin(), names.end(), column.name);
-        if (found == names.end() || std::count(names.begin(), names.end(), column.name) > 1) {
-            std::vector<std::string> needed;
-            for (const EvalColumn& each : function.columns) needed.push_back(each.name);
-            throw Error(ErrorCode::data,
-                        fmt::format("the header has {} column {}; {} needs {}",
-                                    found == names.end() ? "no" : "more than one", column.name,
-                                    function.name, fmt::join(needed, ", ")),
-                        where);
-        }
-        header.columns.push_back(static_cast<std::size_t>(found - names.begin()));
-    }
-    return header;
-}
-
-std::string take_arguments(const std::vector<std::string>& fields, const Header& header,
-                           const EvalFunction& function, EvalArguments& arguments) {
-    if (fields.size() != header.fields) {
-        return fmt::format("{} fields where the header has {}", fields.size(), header.fields);
-    }
-    for (std::size_t i = 0; i < function.columns.size(); ++i) {
-        const EvalColumn& column = function.columns[i];
-        const std::string& text = fields[header.columns[i]];
-        const std::optional<double> value = parse_double(text);
-        if (!value) return fmt::format("{} = '{}' is no number of double range", column.name, text);
-        if (!contains(column, *value)) {
-            return fmt::format("{} = {} is not in {}", column.name, text, column.limits);
-        }
-        arguments[i] = *value;
-    }
-    return {};
-}
-
-Rows parse_rows(const std::vector<CsvRecord>& records, std::size_t first, const Header& header,
-                const EvalFunction& function) {
-    Rows rows;
-    const std::size_t count = records.size() - first;
-    rows.arguments.resize(count);
-    rows.reasons.resize(count);
-    rows.missing_fields.resize(count);
-    rows.values.resize(count);
-    parallel_blocks(count, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::string> fields;
-        for (std::size_t i = begin; i < end; ++i) {
-            csv_fields(records[first + i].text, fields);
-            EvalArguments arguments = {};
-            rows.reasons[i] = take_arguments(fields, header, function, arguments);
-            rows.missing_fields[i] =
-                header.fields > fields.size() ? header.fields - fields.size() : 0;
-            rows.arguments[i] = arguments;
-            if (!rows.reasons[i].empty()) rows.arguments[i].fill(std::nan(""));
-        }
-    });
-    return rows;
-}
-
-std::string format_rows(const std::vector<CsvRecord>& records, std::size_t first, const Rows& rows,
-                        EvalPrecision precision, const char* line_end) {
-    const int digits = precision == EvalPrecision::double_precision ? 17 : 9;
-    std::vector<std::string> parts((rows.values.size() + kRowsPerTask - 1) / kRowsPerTask);
-    parallel_blocks(rows.values.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-        std::string& out = parts[begin / kRowsPerTask];
-        for (std::size_t i = begin; i < end; ++i) {
-            out += records[first + i].text;
-            out.append(rows.missing_fields[i], ',');
-            if (std::isnan(rows.values[i])) {
-                out += ",nan";
-            } else {
-                fmt::format_to(std::back_inserter(out), ",{:.{}g}", rows.values[i], digits);
-            }
-            out += line_end;
-        }
-    });
-    std::string all;
-    for (const std::string& part : parts) all += part;
-    return all;
-}
 
 // Returns the number of rows without a value.
 std::size_t report_failures(const std::vector<CsvRecord>& records, std::size_t first,
-                            const Rows& rows) {
+                            const EvalRows& rows) {
     std::size_t failures = 0;
     for (std::size_t i = 0; i < rows.values.size(); ++i) {
         if (!std::isnan(rows.values[i])) continue;
         ++failures;
-        spdlog::error("{}:{}: {}", kInput, records[first + i].line,
+        spdlog::error("{}:{}: {}", kEvalInput, records[first + i].line,
                       rows.reasons[i].empty() ? "has no value" : rows.reasons[i]);
     }
     return failures;
 }
 
-void evaluate_stream(const EvalFunction& function, const Evaluator& evaluator,
-                     EvalPrecision precision) {
-    CsvReader reader(STDIN_FILENO, kInput);
-    std::optional<Header> header;
+// Every block of standard input, computed: `take(records, first, rows, line_end)`, where records
+// before `first` are the header.
+template <class Take>
+void evaluate_stream(const EvalFunction& function, const Evaluator& evaluator, const Take& take) {
+    CsvReader reader(STDIN_FILENO, kEvalInput);
+    std::optional<EvalHeader> header;
     std::size_t count = 0, failures = 0;
     while (true) {
         const std::vector<CsvRecord>& records = reader.next_block();
         if (records.empty()) break;
-        const char* line_end = reader.crlf() ? "\r\n" : "\n";
-        std::size_t first = 0;
-        std::string out;
-        if (!header) {
-            header = read_header(records[0], function);
-            out = std::string(records[0].text) + "," + kValue + line_end;
-            first = 1;
-        }
-        Rows rows = parse_rows(records, first, *header, function);
+        const std::size_t first = header ? 0 : 1;
+        if (!header) header = read_eval_header(records[0], function);
+        EvalRows rows = parse_eval_rows(records, first, *header, function);
         evaluator(rows.arguments, rows.values);
-        out += format_rows(records, first, rows, precision, line_end);
-        print(out);
-        failures += report_failures(records, first, rows);
+        failures += take(records, first, rows, reader.crlf() ? "\r\n" : "\n");
         count += rows.values.size();
     }
-    if (!header) throw Error(ErrorCode::data, "is empty, and a CSV header was expected", kInput);
+    if (!header) {
+        throw Error(ErrorCode::data, "is empty, and a CSV header was expected", kEvalInput);
+    }
     if (failures > 0) {
         throw Error(ErrorCode::data,
-                    fmt::format("{} of {} rows could not be computed", failures, count), kInput);
+                    fmt::format("{} of {} rows could not be computed", failures, count),
+                    kEvalInput);
     }
 }
 
-void run_eval(const EvalRequest& request) {
+void print_values(const EvalFunction& function, const Evaluator& evaluator,
+                  EvalPrecision precision) {
+    evaluate_stream(function, evaluator,
+                    [&](const std::vector<CsvRecord>& records, std::size_t first,
+                        const EvalRows& rows, const char* line_end) {
+                        std::string out;
+                        if (first == 1) {
+                            out = std::string(records[0].text) + ",value" + line_end;
+                        }
+                        out += format_eval_rows(records, first, rows, precision, line_end);
+                        print(out);
+                        return report_failures(records, first, rows);
+                    });
+}
+
+void print_check(const EvalFunction& function, const EvalRequest& request,
+                 const std::string& method, const Evaluator& evaluator, bool json) {
+    EvalCheck check(function, request.precision, request.check);
+    evaluate_stream(function, evaluator,
+                    [&](const std::vector<CsvRecord>& records, std::size_t first,
+                        const EvalRows& rows, const char*) {
+                        if (first == 1) check.read_header(records[0]);
+                        check.add(records, first, rows);
+                        return report_failures(records, first, rows);
+                    });
+    const EvalErrors errors = check.errors();
+    const char* precision =
+        request.precision == EvalPrecision::double_precision ? "double" : "float";
+    if (json) {
+        print(nlohmann::ordered_json{{"function", function.name},
+                                     {"method", method},
+                                     {"precision", precision},
+                                     {"rows", errors.rows},
+                                     {"without_value", errors.without_value},
+                                     {"max", errors.max},
+                                     {"p99", errors.p99},
+                                     {"median", errors.median}});
+        return;
+    }
+    print(fmt::format(
+        "{}, {}, {}: {} rows, relative error max {:.2g}, p99 {:.2g}, median "
+        "{:.2g}{}\n",
+        function.name, method, precision, errors.rows, errors.max, errors.p99, errors.median,
+        errors.without_value > 0 ? fmt::format("; {} rows without a value", errors.without_value)
+                                 : std::string()));
+}
+
+std::string list_methods() {
+    std::string list = "function,method\n";
+    for (const EvalFunction& function : eval_functions()) {
+        for (const std::string& method : function.methods) {
+            list += function.name + "," + method + "\n";
+        }
+    }
+    return list;
+}
+
+void run_eval(const EvalRequest& request, bool json) {
+    if (request.list) {
+        print(list_methods());
+        return;
+    }
     std::vector<std::string> names;
     const EvalFunction* function = nullptr;
     for (const EvalFunction& each : eval_functions()) {
@@ -223,7 +156,12 @@ void run_eval(const EvalRequest& request) {
                                 list_choices(function->methods)),
                     "--method");
     }
-    evaluate_stream(*function, function->make(method, request.precision), request.precision);
+    const Evaluator evaluator = function->make(method, request.precision);
+    if (request.check.empty()) {
+        print_values(*function, evaluator, request.precision);
+    } else {
+        print_check(*function, request, method, evaluator, json);
+    }
 }
 
 std::string function_list() {
@@ -255,7 +193,10 @@ Command declare_eval(CLI::App& program) {
             "is added, with 17 significant digits (9 for float). Angles are in radians; inf is a\n"
             "number. Blank lines and lines that begin with # are left out. A row that cannot be\n"
             "computed has the value nan, its line and the reason go to standard error, and the\n"
-            "exit status is 1.");
+            "exit status is 1. With --check, errors are relative (those of a logarithm absolute; "
+            "those of an\n"
+            "inverse function are judged in the forward one). Float values are compared with the\n"
+            "default method in double at the arguments rounded to float, not with the column.");
     const auto request = std::make_shared<EvalRequest>();
     command.app->add_option("function", request->function, "What to compute")->option_text(" ");
     add_flag(command, "--precision", "double|float", "Arithmetic (default: double)",
@@ -271,7 +212,12 @@ Command declare_eval(CLI::App& program) {
                  parse_number(text, "--tolerance", {0, 1, true, true});
                  request->tolerance = true;
              });
-    command.run = [request] { run_eval(*request); };
+    add_flag(command, "--check", "COLUMN",
+             "Print how far the values are from this column, instead of the values",
+             [=](const std::string& text) { request->check = text; });
+    command.app->add_flag("--list", request->list, "List the functions and their methods as CSV");
+    add_json_flag(command, "Report of --check as JSON");
+    command.run = [request, common = command.common] { run_eval(*request, common->json); };
     return command;
 }
 

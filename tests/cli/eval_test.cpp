@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tests/cli/program.h"
@@ -53,108 +54,131 @@ std::vector<double> eval(const std::string& function, const std::string& csv,
     return values_of(outcome.out);
 }
 
+std::vector<std::string> reference_lines(const std::string& file) {
+    std::vector<std::string> kept;
+    for (const std::string& line : lines_of(read_bytes(AIRLIGHT_REFERENCE_DIR "/" + file))) {
+        if (!line.empty() && line[0] != '#') kept.push_back(line);
+    }
+    return kept;
+}
+
+// A file of tests/reference, as its index.csv lists it.
 struct Table {
-    std::string function;
-    std::string file;    ///< of tests/reference
-    std::string column;  ///< that holds the value
-    std::size_t rows;    ///< at least
-    bool logarithm = false;
+    std::string function, file, column;
 };
 
 std::ostream& operator<<(std::ostream& stream, const Table& table) {
     return stream << table.function << " on " << table.file;
 }
 
+std::vector<Table> reference_tables() {
+    std::vector<Table> tables;
+    const std::vector<std::string> index = reference_lines("index.csv");
+    for (std::size_t i = 1; i < index.size(); ++i) {
+        tables.push_back({field(index[i], 0), field(index[i], 1), field(index[i], 2)});
+    }
+    return tables;
+}
+
 class Reference : public testing::TestWithParam<Table> {
   protected:
-    // Without its comments.
-    std::vector<std::string> rows() const {
-        std::vector<std::string> kept;
-        for (const std::string& line :
-             lines_of(read_bytes(AIRLIGHT_REFERENCE_DIR "/" + GetParam().file))) {
-            if (line[0] != '#') kept.push_back(line);
-        }
-        return kept;
+    std::vector<std::string> flags(const std::string& precision) const {
+        return {"eval",    GetParam().function, "--precision", precision,
+                "--check", GetParam().column,   "--json"};
     }
     std::string csv() const {
         std::string text;
-        for (const std::string& line : rows()) text += line + "\n";
+        for (const std::string& line : reference_lines(GetParam().file)) text += line + "\n";
         return text;
     }
-    std::size_t value_column() const {
-        const std::string header = rows()[0];
-        std::size_t index = 0;
-        while (field(header, index) != GetParam().column) ++index;
-        return index;
+    // Runs the check and holds its largest error against the tolerance.
+    void expect_errors_below(double tolerance, const std::string& precision) const {
+        const Outcome outcome = run(flags(precision), csv());
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+        const nlohmann::json report = nlohmann::json::parse(outcome.out);
+        EXPECT_EQ(report["rows"], reference_lines(GetParam().file).size() - 1);
+        EXPECT_GT(report["rows"], 10);
+        EXPECT_EQ(report["without_value"], 0);
+        EXPECT_LE(report["max"], tolerance);
+        EXPECT_LE(report["median"], report["p99"]);
+        EXPECT_LE(report["p99"], report["max"]);
     }
 };
-INSTANTIATE_TEST_SUITE_P(Tables, Reference,
-                         testing::Values(Table{"F", "F.csv", "F", 300},
-                                         Table{"F_diff", "F_diff.csv", "F_hi_minus_F_lo", 100},
-                                         Table{"airlight", "airlight.csv", "La_over_beta2_I0", 350},
-                                         Table{"npsf", "npsf.csv", "NPSF", 17},
-                                         Table{"psf", "psf.csv", "PSF", 200},
-                                         Table{"npsf_sh", "npsf_sh.csv", "g_l", 32},
-                                         Table{"psf_sh", "psf_sh.csv", "g_l", 700}),
+INSTANTIATE_TEST_SUITE_P(Tables, Reference, testing::ValuesIn(reference_tables()),
                          [](const auto& each) {
                              std::string name = each.param.function + "_on_" + each.param.file;
-                             for (char& c : name)
-                                 c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+                             for (char& c : name) {
+                                 if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+                             }
                              return name;
                          });
 
-// Relative 1e-12 wherever a double has all its digits; of a logarithm, what that is of its number.
-TEST_P(Reference, DoubleReachesTwelveDigits) {
-    const Outcome outcome = run({"eval", GetParam().function}, csv());
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(outcome.err, "");
-    const std::vector<std::string> in = rows(), out = lines_of(outcome.out);
-    ASSERT_EQ(out.size(), in.size());
-    ASSERT_GT(out.size(), GetParam().rows);
-    EXPECT_EQ(out[0], in[0] + ",value");
-    const std::size_t column = value_column();
-    for (std::size_t i = 1; i < in.size(); ++i) {
-        ASSERT_EQ(out[i].rfind(in[i] + ",", 0), 0u) << out[i];
-        const double expected = number(in[i], column);
-        const double value = std::strtod(last_field(out[i]).c_str(), nullptr);
-        if (std::isinf(expected)) {
-            EXPECT_EQ(value, expected) << out[i];
-        } else {
-            const double scale = std::abs(expected) + (GetParam().logarithm ? 1 : 0);
-            EXPECT_NEAR(value, expected, std::max(1e-12 * scale, 1e-302)) << out[i];
-        }
+TEST(Eval, EveryFunctionHasReferenceValues) {
+    const std::vector<Table> tables = reference_tables();
+    for (const std::string& line : lines_of(run({"eval", "--list"}, "").out)) {
+        const std::string function = field(line, 0);
+        if (function == "function") continue;
+        EXPECT_TRUE(std::any_of(tables.begin(), tables.end(), [&](const Table& table) {
+            return table.function == function;
+        })) << function;
     }
+}
+
+// Relative 1e-12 wherever a double has all its digits; of a logarithm, absolute; of an inverse,
+// in the forward function.
+TEST_P(Reference, DoubleReachesTwelveDigits) {
+    expect_errors_below(1e-12, "double");
 }
 
 // Float is judged against double at the arguments rounded to float.
 TEST_P(Reference, FloatReachesItsTolerance) {
-    const std::vector<std::string> in = rows();
-    const std::size_t fields =
-        1 + static_cast<std::size_t>(std::count(in[0].begin(), in[0].end(), ','));
-    std::string rounded = in[0] + "\n";
-    for (std::size_t row = 1; row < in.size(); ++row) {
-        for (std::size_t i = 0; i < fields; ++i) {
-            char text[40];
-            std::snprintf(text, sizeof text, "%.17g",
-                          static_cast<double>(static_cast<float>(number(in[row], i))));
-            rounded += (i == 0 ? "" : ",") + std::string(text);
+    expect_errors_below(2e-5, "float");
+}
+
+// The check itself: a value off by one part in a thousand shows, and a NaN is not lost.
+TEST(Eval, ACheckTellsHowFarTheValuesAre) {
+    const std::string csv = "gamma,mine\n0.5," + [] {
+        char text[40];
+        std::snprintf(text, sizeof text, "%.17g", eval("npsf", "gamma\n0.5\n")[0] / 1.001);
+        return std::string(text);
+    }() + "\n";
+    const Outcome outcome = run({"eval", "npsf", "--check", "mine", "--json"}, csv);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NEAR(nlohmann::json::parse(outcome.out)["max"], 1e-3, 1e-12);
+    const Outcome words = run({"eval", "npsf", "--check", "mine"}, csv);
+    EXPECT_EQ(words.out,
+              "npsf, exact, double: 1 rows, relative error max 0.001, p99 0.001, median 0.001\n");
+    expect_failure({"eval", "npsf", "--check", "yours"}, 1, "the header has no column yours", csv);
+    expect_failure({"eval", "npsf", "--check", "mine"}, 1, "mine = 'x' is no number",
+                   "gamma,mine\n0.5,x\n");
+    const Outcome bad = run({"eval", "npsf", "--check", "mine"}, "gamma,mine\n-1,2\n");
+    EXPECT_EQ(bad.status, 1);
+    EXPECT_NE(bad.err.find("2: gamma = -1 is not in"), std::string::npos) << bad.err;
+    EXPECT_EQ(bad.out, "");
+}
+
+// What is printed: the row as it stood, and a value of 17 digits, or of 9, which name one float.
+TEST(Eval, ValuesFollowTheirRows) {
+    const std::vector<std::string> in = reference_lines("psf.csv");
+    std::string csv;
+    for (const std::string& line : in) csv += line + "\n";
+    for (const bool single : {false, true}) {
+        const Outcome outcome =
+            run({"eval", "psf", "--precision", single ? "float" : "double"}, csv);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        const std::vector<std::string> out = lines_of(outcome.out);
+        ASSERT_EQ(out.size(), in.size());
+        EXPECT_EQ(out[0], in[0] + ",value");
+        for (std::size_t i = 1; i < in.size(); ++i) {
+            ASSERT_EQ(out[i].rfind(in[i] + ",", 0), 0u) << out[i];
+            const double value = std::strtod(last_field(out[i]).c_str(), nullptr);
+            const double expected = number(in[i], 2);
+            EXPECT_NEAR(value, expected, (single ? 2e-5 : 1e-12) * expected + 1e-44) << out[i];
+            if (single) {
+                EXPECT_NEAR(value, static_cast<float>(value), 5e-9 * value) << out[i];
+            }
         }
-        rounded += "\n";
-    }
-    const std::vector<double> expected = eval(GetParam().function, rounded);
-    const std::vector<double> values = eval(GetParam().function, rounded, {"--precision", "float"});
-    const std::vector<double> unrounded =
-        eval(GetParam().function, csv(), {"--precision", "float"});
-    ASSERT_EQ(values.size(), expected.size());
-    EXPECT_EQ(values, unrounded);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        // Nine digits name one float.
-        const auto value = static_cast<float>(values[i]);
-        EXPECT_NEAR(values[i], value, 5e-9 * std::abs(value)) << i;
-        if (value == static_cast<float>(expected[i])) continue;
-        const double scale = std::abs(expected[i]) + (GetParam().logarithm ? 1 : 0);
-        EXPECT_NEAR(values[i], expected[i], 2e-5 * scale + std::numeric_limits<float>::denorm_min())
-            << in[i + 1];
     }
 }
 
