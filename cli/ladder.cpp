@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
 #include "cli/command.h"
+#include "cli/ladder_closed_forms.h"
 #include "cli/ladder_effects.h"
 #include "cli/ladder_page.h"
 #include "cli/numbers.h"
@@ -27,12 +29,25 @@ namespace {
 constexpr int kSmallestWidth = 32, kLargestWidth = 2048;
 
 struct LadderEffectInfo {
-    const char* name;
-    LadderWork (*plan)(const LadderOptions& options);
+    std::string name;
+    std::function<LadderWork(const LadderOptions& options)> plan;
 };
 
-constexpr LadderEffectInfo kEffects[] = {{"fog", plan_fog_ladder},
-                                         {"airlight", plan_airlight_ladder}};
+std::vector<LadderEffectInfo> ladder_effects() {
+    std::vector<LadderEffectInfo> effects = {{"fog", plan_fog_ladder}};
+    for (const ClosedFormLadder& ladder : closed_form_ladders()) {
+        effects.push_back({ladder.effect, [&ladder](const LadderOptions&) {
+                               return plan_closed_form_ladder(ladder);
+                           }});
+    }
+    return effects;
+}
+
+std::vector<std::string> effect_names() {
+    std::vector<std::string> names;
+    for (const LadderEffectInfo& effect : ladder_effects()) names.push_back(effect.name);
+    return names;
+}
 
 struct LadderRequest {
     std::vector<std::string> effects;
@@ -53,8 +68,7 @@ void take_size(const std::string& text, LadderOptions& options) {
 }
 
 std::vector<LadderWork> plan_work(const LadderRequest& request) {
-    std::vector<std::string> names;
-    for (const LadderEffectInfo& effect : kEffects) names.push_back(effect.name);
+    const std::vector<std::string> names = effect_names();
     const std::vector<std::string>& asked = request.effects.empty() ? names : request.effects;
     for (const std::string& name : asked) {
         if (std::count(names.begin(), names.end(), name) == 0) {
@@ -63,7 +77,7 @@ std::vector<LadderWork> plan_work(const LadderRequest& request) {
         }
     }
     std::vector<LadderWork> work;
-    for (const LadderEffectInfo& effect : kEffects) {
+    for (const LadderEffectInfo& effect : ladder_effects()) {
         if (std::count(asked.begin(), asked.end(), effect.name) > 0) {
             work.push_back(effect.plan(request.options));
         }
@@ -147,7 +161,9 @@ Command declare_ladder(CLI::App& program) {
         "made if it does not exist. The default takes about a minute. With --threads 1 times\n"
         "are CPU time, which a busy machine hardly changes; otherwise those of fog are wall time.");
     const auto request = std::make_shared<LadderRequest>();
-    command.app->add_option("effects", request->effects, "fog, airlight (default: both)")
+    command.app
+        ->add_option("effects", request->effects,
+                     fmt::format("{} (default: all)", fmt::join(effect_names(), ", ")))
         ->option_text(" ");
     add_flag(command, "-o,--output", "DIR", "Directory of the report",
              [=](const std::string& text) { request->directory = text; });
