@@ -10,6 +10,7 @@ const std::vector<EvalFunction>& eval_functions() {
         std::vector<EvalFunction> all;
         for (const auto& room : {
                  airlight_functions,
+                 density_functions,
                  sh_functions,
              }) {
             std::vector<EvalFunction> functions = room();
