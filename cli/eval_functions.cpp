@@ -11,6 +11,7 @@ const std::vector<EvalFunction>& eval_functions() {
         for (const auto& room : {
                  airlight_functions,
                  density_functions,
+                 gaussian_functions,
                  sh_functions,
              }) {
             std::vector<EvalFunction> functions = room();

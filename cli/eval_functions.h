@@ -53,6 +53,7 @@ const std::vector<EvalFunction>& eval_functions();
 // One list per room, cli/eval_ROOM.cpp.
 std::vector<EvalFunction> airlight_functions();
 std::vector<EvalFunction> density_functions();
+std::vector<EvalFunction> gaussian_functions();
 std::vector<EvalFunction> sh_functions();
 
 }  // namespace airlight
