@@ -2,6 +2,7 @@
 // `airlight eval`: density fields and what they are computed with.
 #include "cli/eval_functions.h"
 #include "cli/eval_rows.h"
+#include "medium/height_density.h"
 #include "medium/scaled_erfc.h"
 
 namespace airlight {
@@ -32,6 +33,51 @@ std::vector<EvalFunction> density_functions() {
          {{"x", "[-inf, inf]", -std::numeric_limits<double>::infinity()}},
          names_of(kErfcxMethods),
          make_erfcx},
+        {"rectexp",
+         "column of exp(-n height) along a ray",
+         {any_number("height"), cosine("dirZ"), not_negative("dist"), any_number("n")},
+         {"exact"},
+         [](const std::string&, EvalPrecision precision) {
+             return in_precision<4>(precision, [](auto height, auto up, auto dist, auto n) {
+                 return exponential_height_depth(height, up, dist, n);
+             });
+         }},
+        {"rectexp_inverse",
+         "distance at which rectexp has a value",
+         {not_negative("tau_over_seaLvlAtt"), any_number("height"), cosine("dirZ"),
+          any_number("n")},
+         {"exact"},
+         [](const std::string&, EvalPrecision precision) {
+             return in_precision<4>(precision, [](auto tau, auto height, auto up, auto n) {
+                 return exponential_height_distance(tau, height, up, n);
+             });
+         },
+         [](const EvalArguments& a, double distance) {
+             return exponential_height_depth(a[1], a[2], distance, a[3]);
+         }},
+        {"linear",
+         "column of max(0, a height + k) along a ray",
+         {any_number("a"), any_number("k"), any_number("height"), cosine("dirZ"),
+          not_negative("dist")},
+         {"exact"},
+         [](const std::string&, EvalPrecision precision) {
+             return in_precision<5>(precision, [](auto a, auto k, auto height, auto up, auto dist) {
+                 return linear_height_depth(a, k, height, up, dist);
+             });
+         }},
+        {"linear_inverse",
+         "distance at which linear has a value",
+         {not_negative("tau_over_sigma"), any_number("a"), any_number("k"), any_number("height"),
+          cosine("dirZ")},
+         {"exact"},
+         [](const std::string&, EvalPrecision precision) {
+             return in_precision<5>(precision, [](auto tau, auto a, auto k, auto height, auto up) {
+                 return linear_height_distance(tau, a, k, height, up);
+             });
+         },
+         [](const EvalArguments& a, double distance) {
+             return linear_height_depth(a[1], a[2], a[3], a[4], distance);
+         }},
     };
 }
 

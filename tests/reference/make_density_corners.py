@@ -4,13 +4,14 @@
 
 Usage: python3 make_density_corners.py TABLE [COUNT] [SEED] > TABLE_corners.csv
 
-TABLE is one of exp2erfc. Draws COUNT rows (default: the number in the shipped file) and evaluates
+TABLE is one of exp2erfc, rectexp, rectexp_inverse, linear, linear_inverse. Draws COUNT rows (default: the number in the shipped file) and evaluates
 them at the exact doubles that are printed. Formulas are the plain ones of the definition, at
 thousands of digits where they cancel.
 """
 import math
 import random
 import sys
+from fractions import Fraction
 
 import mpmath as mp
 
@@ -51,9 +52,143 @@ def exp2erfc_rows(rng, count):
         print(f"{x!r},{show(erfcx(x))}")
 
 
+def size(rng):
+    """Positive, of all sizes."""
+    return rng.choice([
+        lambda: 10 ** rng.uniform(-3, 3),
+        lambda: 10 ** rng.uniform(-12, 12),
+        lambda: 10 ** rng.uniform(-300, 300),
+        lambda: rng.choice([5e-324, 1e-310, 1.0, 2.2250738585072014e-308, 1.7e308]),
+    ])()
+
+
+def sign(rng):
+    return rng.choice([-1, 1])
+
+
+def upward(rng):
+    return rng.choice([
+        lambda: rng.uniform(-1, 1),
+        lambda: sign(rng) * 10 ** rng.uniform(-17, 0),
+        lambda: sign(rng) * 10 ** rng.uniform(-310, 0),
+        lambda: rng.choice([-1.0, 1.0, 0.0, -0.0]),
+    ])()
+
+
+def rational(x):
+    """A rational number for mpmath, at the precision of the moment."""
+    return mp.mpf(x.numerator) / x.denominator
+
+
+def exponential_column(height, up, dist, n):
+    """int_0^dist e^{-n (height + s up)} ds; exact rationals up to the exponentials."""
+    with mp.workdps(DIGITS):
+        rate = Fraction(n) * Fraction(up)
+        base = rational(Fraction(n) * Fraction(height))
+        if math.isinf(dist):
+            return mp.exp(-base) / rational(rate)
+        if rate == 0:
+            return mp.exp(-base) * mp.mpf(dist)
+        y = rational(rate * Fraction(dist))
+        end = rational(Fraction(n) * (Fraction(height) + Fraction(up) * Fraction(dist)))
+        if y > 0:
+            return -mp.exp(-base) * mp.expm1(-y) / rational(rate)
+        return mp.exp(-end) * mp.expm1(y) / rational(rate)
+
+
+def exponential_ray(rng):
+    """height, up, dist, n with exponents within reach of a double, most of the time."""
+    n = sign(rng) * size(rng) if rng.random() < 0.95 else 0.0
+    height = rng.choice([
+        lambda: rng.uniform(-700, 700) / n if n else 1.0,
+        lambda: rng.uniform(-5, 5) / n if n else 1.0,
+        lambda: sign(rng) * size(rng),
+        lambda: 0.0,
+    ])()
+    up = upward(rng)
+    dist = rng.choice([
+        lambda: size(rng),
+        lambda: 10 ** rng.uniform(-3, 3) / abs(n * up) if n * up else 1.0,
+        lambda: abs(height / up) * (1 + rng.uniform(-1, 1) * 10 ** rng.uniform(-16, -1))
+        if up else 1.0,
+        lambda: math.inf,
+    ])()
+    return height, up, dist, n
+
+
+def rectexp_rows(rng, count):
+    print("height,dirZ,dist,n,tau_over_seaLvlAtt")
+    done = 0
+    while done < count:
+        try:
+            height, up, dist, n = exponential_ray(rng)
+        except (OverflowError, ZeroDivisionError):
+            continue
+        if not all(map(math.isfinite, (height, n))) or math.isnan(dist):
+            continue
+        if math.isinf(dist) and n * up <= 0:
+            continue
+        if abs(Fraction(n) * Fraction(height)) > 10 ** 7:
+            continue
+        if math.isfinite(dist) and abs(Fraction(n) * Fraction(up) * Fraction(dist)) > 10 ** 7:
+            continue
+        value = exponential_column(height, up, dist, n)
+        if in_range(value):
+            print(f"{height!r},{up!r},{dist!r},{n!r},{show(value)}")
+            done += 1
+
+
+def linear_column(a, k, height, up, dist):
+    """int_0^dist max(0, a (height + s up) + k) ds, exactly."""
+    a, k, height, up, dist = map(Fraction, (a, k, height, up, dist))
+    first, gradient = a * height + k, a * up
+    last = first + gradient * dist
+    if first >= 0 and last >= 0:
+        return dist * (first + last) / 2
+    if first <= 0 and last <= 0:
+        return Fraction(0)
+    return (first if first > 0 else last) ** 2 / (2 * abs(gradient))
+
+
+def linear_ray(rng):
+    a = sign(rng) * size(rng) if rng.random() < 0.95 else 0.0
+    height = sign(rng) * size(rng)
+    k = rng.choice([
+        lambda: sign(rng) * size(rng),
+        lambda: -a * height * (1 + sign(rng) * 10 ** rng.uniform(-17, 0)),
+        lambda: -a * height,
+    ])()
+    up = upward(rng)
+    end = abs((a * height + k) / (a * up)) if a * up else 1.0
+    dist = rng.choice([
+        lambda: size(rng),
+        lambda: end * (1 + sign(rng) * 10 ** rng.uniform(-17, 0)),
+        lambda: end * rng.uniform(0, 3),
+    ])()
+    return a, k, height, up, dist
+
+
+def linear_rows(rng, count):
+    print("a,k,height,dirZ,dist,tau_over_sigma_clamped")
+    done = 0
+    while done < count:
+        row = linear_ray(rng)
+        if not all(map(math.isfinite, row)):
+            continue
+        with mp.workdps(DIGITS):
+            value = rational(linear_column(*row))
+        if value == 0 and rng.random() < 0.9:
+            continue
+        if value == 0 or in_range(value):
+            print(",".join(map(repr, row)) + "," + show(value))
+            done += 1
+
+
 # Makers of rows, and how many the shipped file has.
 TABLES = {
     "exp2erfc": (exp2erfc_rows, 120),
+    "linear": (linear_rows, 300),
+    "rectexp": (rectexp_rows, 300),
 }
 
 
