@@ -13,6 +13,7 @@ const std::vector<EvalFunction>& eval_functions() {
                  density_functions,
                  gaussian_functions,
                  sh_functions,
+                 surface_functions,
              }) {
             std::vector<EvalFunction> functions = room();
             std::move(functions.begin(), functions.end(), std::back_inserter(all));

@@ -55,5 +55,6 @@ std::vector<EvalFunction> airlight_functions();
 std::vector<EvalFunction> density_functions();
 std::vector<EvalFunction> gaussian_functions();
 std::vector<EvalFunction> sh_functions();
+std::vector<EvalFunction> surface_functions();
 
 }  // namespace airlight
