@@ -12,6 +12,7 @@ const std::vector<EvalFunction>& eval_functions() {
                  airlight_functions,
                  density_functions,
                  gaussian_functions,
+                 phase_functions,
                  sh_functions,
                  surface_functions,
              }) {

@@ -54,6 +54,7 @@ const std::vector<EvalFunction>& eval_functions();
 std::vector<EvalFunction> airlight_functions();
 std::vector<EvalFunction> density_functions();
 std::vector<EvalFunction> gaussian_functions();
+std::vector<EvalFunction> phase_functions();
 std::vector<EvalFunction> sh_functions();
 std::vector<EvalFunction> surface_functions();
 

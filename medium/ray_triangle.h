@@ -76,7 +76,10 @@ Real airlight_by(Real gamma, Real t_sv, Real t_vp, Real transmittance, const Int
     const Real value = integral(r) * (transmittance / static_cast<Real>(2 * kPi));
     // The order of the divisions keeps every intermediate value in range when the result is.
     if (r.ends_near) return value * r.x_per_rho * transmittance / t_sv;
-    return t_sv < 1 ? value / r.rho * transmittance / t_sv : value / r.y * transmittance;
+    if (t_sv < 1) return value / r.rho * transmittance / t_sv;
+    const Real result = value / r.y * transmittance;
+    // A peaked phase function lifts what a denormal angle has lifted already.
+    return std::isinf(result) ? value * transmittance / r.y : result;
 }
 
 }  // namespace detail
