@@ -13,7 +13,9 @@
 #include <cstdio>
 #include <functional>
 #include <map>
+#include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/march_batch.h"
@@ -21,6 +23,10 @@
 #include "medium/airlight_batch.h"
 #include "medium/airlight_rungs.h"
 #include "medium/airlight_sets.h"
+#include "medium/gaussian_density.h"
+#include "medium/gaussian_line_batch.h"
+#include "medium/height_density.h"
+#include "medium/height_density_batch.h"
 #include "medium/psf.h"
 #include "medium/psf_batch.h"
 
@@ -84,27 +90,26 @@ void add_batch(const std::string& name, const Inputs& inputs, const Batch& batch
     }
 }
 
-template <std::size_t kInputs, class Function>
-void add_scalar(const std::string& name, const Inputs& inputs, const Function& function) {
+template <class Function, std::size_t... kIndex>
+void add_scalar(const std::string& name, const Inputs& inputs, const Function& function,
+                std::index_sequence<kIndex...>) {
     benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
-        std::vector<double> x[kInputs];
-        for (std::size_t k = 0; k < kInputs; ++k) {
-            x[k].assign(inputs.columns[k].begin(), inputs.columns[k].end());
-        }
+        const std::vector<double> x[] = {
+            {inputs.columns[kIndex].begin(), inputs.columns[kIndex].end()}...};
         std::vector<double> out(inputs.exact.size());
         for (auto _ : state) {
-            for (std::size_t i = 0; i < out.size(); ++i) {
-                if constexpr (kInputs == 2) {
-                    out[i] = function(x[0][i], x[1][i]);
-                } else {
-                    out[i] = function(x[0][i], x[1][i], x[2][i]);
-                }
-            }
+            for (std::size_t i = 0; i < out.size(); ++i) out[i] = function(x[kIndex][i]...);
             benchmark::DoNotOptimize(out.data());
             benchmark::ClobberMemory();
         }
         report(state, inputs.exact, out);
     });
+}
+
+/// The double function of kInputs numbers, value by value.
+template <std::size_t kInputs, class Function>
+void add_scalar(const std::string& name, const Inputs& inputs, const Function& function) {
+    add_scalar(name, inputs, function, std::make_index_sequence<kInputs>());
 }
 
 void add_airlight(char set) {
@@ -147,6 +152,53 @@ void add_psf() {
     add_scalar<2>("psf_scaled/exact", scaled, [](double t, double g) { return psf_scaled(t, g); });
     add_batch("psf_scaled/batch", scaled, [](const Columns& x, float* out) {
         psf_scaled_batch(kRays, x[0].data(), x[1].data(), out);
+    });
+}
+
+// Rays of a fog bank: heights of -1 to 5 scale heights, every direction, up to 10 of them long.
+void add_height() {
+    std::mt19937 bits(3);
+    std::uniform_real_distribution<float> unit(0, 1);
+    Columns columns(4);
+    for (std::size_t i = 0; i < kRays; ++i) {
+        columns[0].push_back(8 * (-1 + 6 * unit(bits)));
+        columns[1].push_back(-1 + 2 * unit(bits));
+        columns[2].push_back(80 * unit(bits));
+        columns[3].push_back(1 / 8.0f);
+    }
+    const Inputs inputs(
+        columns, [](const double* x) { return exponential_height_depth(x[0], x[1], x[2], x[3]); });
+    add_scalar<4>("exponential_height/exact", inputs, [](double h, double u, double d, double n) {
+        return exponential_height_depth(h, u, d, n);
+    });
+    add_batch("exponential_height/batch", inputs, [](const Columns& x, float* out) {
+        exponential_height_depth_batch(kRays, x[0].data(), x[1].data(), x[2].data(), x[3].data(),
+                                       out);
+    });
+}
+
+// Segments through and beside blobs, up to 3 radii away and 6 long.
+void add_gaussian() {
+    std::mt19937 bits(4);
+    std::uniform_real_distribution<float> unit(0, 1);
+    Columns columns(5);
+    for (std::size_t i = 0; i < kRays; ++i) {
+        const float a = 0.5f + unit(bits);
+        columns[0].push_back(a);
+        columns[1].push_back(unit(bits));
+        columns[2].push_back(3 * unit(bits) / a);
+        columns[3].push_back((-3 + 6 * unit(bits)) / a);
+        columns[4].push_back(6 * unit(bits) / a);
+    }
+    const Inputs inputs(
+        columns, [](const double* x) { return gaussian_line(x[0], x[1], x[2], x[3], x[4]); });
+    add_scalar<5>("gaussian_line/exact", inputs,
+                  [](double a, double c, double rho, double m, double d) {
+                      return gaussian_line(a, c, rho, m, d);
+                  });
+    add_batch("gaussian_line/batch", inputs, [](const Columns& x, float* out) {
+        gaussian_line_batch(kRays, x[0].data(), x[1].data(), x[2].data(), x[3].data(), x[4].data(),
+                            out);
     });
 }
 
@@ -193,6 +245,8 @@ int main(int argc, char** argv) {
     airlight::add_airlight('A');
     airlight::add_airlight('B');
     airlight::add_psf();
+    airlight::add_height();
+    airlight::add_gaussian();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     airlight::Reporter reporter;
@@ -206,7 +260,9 @@ int main(int argc, char** argv) {
         reporter.ratio("airlight/batch-march64" + set + "/AVX2", "airlight/batch" + set + "/AVX2",
                        "");
     }
-    reporter.ratio("psf/exact", "psf/batch/AVX2", "");
+    for (const std::string name : {"psf", "psf_scaled", "exponential_height", "gaussian_line"}) {
+        reporter.ratio(name + "/exact", name + "/batch/AVX2", "");
+    }
     benchmark::Shutdown();
     return 0;
 }
