@@ -7,9 +7,11 @@
 #include "cli/eval_functions.h"
 #include "cli/eval_rows.h"
 #include "medium/airlight.h"
+#include "medium/airlight_batch.h"
 #include "medium/airlight_method.h"
 #include "medium/airlight_rungs.h"
 #include "medium/psf.h"
+#include "medium/psf_batch.h"
 #include "medium/special_f.h"
 
 namespace airlight {
@@ -20,6 +22,7 @@ std::vector<std::string> airlight_methods() {
     for (const AirlightMethodInfo& info : kAirlightMethods) {
         if (info.name != names[0]) names.emplace_back(info.name);
     }
+    names.insert(names.end(), {"batch", "batch-table"});
     return names;
 }
 
@@ -43,6 +46,17 @@ std::optional<int> sinh_gl_nodes(AirlightMethod method) {
 }
 
 Evaluator make_airlight(const std::string& name, EvalPrecision precision) {
+    if (name == "batch") {
+        return in_batches<3>([](std::size_t count, const auto& x, float* out) {
+            airlight_batch(count, x[0], x[1], x[2], out);
+        });
+    }
+    if (name == "batch-table") {
+        return in_batches<3>([table = std::make_shared<const AirlightBatchTable>()](
+                                 std::size_t count, const auto& x, float* out) {
+            table->airlight_batch(count, x[0], x[1], x[2], out);
+        });
+    }
     const std::optional<AirlightMethod> method = airlight_method_from_name(name);
     assert(method.has_value());
     if (*method == AirlightMethod::exact) {
@@ -68,6 +82,11 @@ Evaluator make_psf(const std::string& method, EvalPrecision precision) {
     if (method == "factored") {
         return in_precision<2>(precision,
                                [](auto t, auto gamma) { return psf_factored(t, gamma); });
+    }
+    if (method == "batch") {
+        return in_batches<2>([](std::size_t count, const auto& x, float* out) {
+            psf_batch(count, x[0], x[1], out);
+        });
     }
     return in_precision<2>(precision, [](auto t, auto gamma) { return psf(t, gamma); });
 }
@@ -107,7 +126,7 @@ std::vector<EvalFunction> airlight_functions() {
         {"psf",
          "PSF_T(gamma), 1/sr",
          {not_negative("T"), angle("gamma")},
-         {"exact", "factored"},
+         {"exact", "factored", "batch"},
          make_psf},
     };
 }

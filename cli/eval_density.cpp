@@ -3,6 +3,7 @@
 #include "cli/eval_functions.h"
 #include "cli/eval_rows.h"
 #include "medium/height_density.h"
+#include "medium/height_density_batch.h"
 #include "medium/scaled_erfc.h"
 
 namespace airlight {
@@ -24,6 +25,17 @@ Evaluator make_erfcx(const std::string& method, EvalPrecision precision) {
     return in_precision<1>(precision, [](auto x) { return erfcx(x); });
 }
 
+Evaluator make_exponential_height(const std::string& method, EvalPrecision precision) {
+    if (method == "batch") {
+        return in_batches<4>([](std::size_t count, const auto& x, float* out) {
+            exponential_height_depth_batch(count, x[0], x[1], x[2], x[3], out);
+        });
+    }
+    return in_precision<4>(precision, [](auto height, auto up, auto dist, auto n) {
+        return exponential_height_depth(height, up, dist, n);
+    });
+}
+
 }  // namespace
 
 std::vector<EvalFunction> density_functions() {
@@ -36,12 +48,8 @@ std::vector<EvalFunction> density_functions() {
         {"rectexp",
          "column of exp(-n height) along a ray",
          {any_number("height"), cosine("dirZ"), not_negative("dist"), any_number("n")},
-         {"exact"},
-         [](const std::string&, EvalPrecision precision) {
-             return in_precision<4>(precision, [](auto height, auto up, auto dist, auto n) {
-                 return exponential_height_depth(height, up, dist, n);
-             });
-         }},
+         {"exact", "batch"},
+         make_exponential_height},
         {"rectexp_inverse",
          "distance at which rectexp has a value",
          {not_negative("tau_over_seaLvlAtt"), any_number("height"), cosine("dirZ"),

@@ -8,6 +8,7 @@
 #include "cli/eval_rows.h"
 #include "medium/average_depth.h"
 #include "medium/gaussian_density.h"
+#include "medium/gaussian_line_batch.h"
 #include "medium/gaussian_line_method.h"
 
 namespace airlight {
@@ -22,10 +23,16 @@ std::vector<std::string> line_methods() {
     for (const GaussianLineMethodInfo& info : kGaussianLineMethods) {
         if (info.name != names[0]) names.emplace_back(info.name);
     }
+    names.emplace_back("batch");
     return names;
 }
 
 Evaluator make_line(const std::string& name, EvalPrecision precision) {
+    if (name == "batch") {
+        return in_batches<5>([](std::size_t count, const auto& x, float* out) {
+            gaussian_line_batch(count, x[0], x[1], x[2], x[3], x[4], out);
+        });
+    }
     const std::optional<GaussianLineMethod> method = gaussian_line_method_from_name(name);
     assert(method.has_value());
     return in_precision<5>(

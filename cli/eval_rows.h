@@ -2,9 +2,12 @@
 // What the functions of `airlight eval` are put together from: columns, and evaluators of rows.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 #include "cli/eval_functions.h"
 #include "core/parallel.h"
@@ -46,6 +49,31 @@ Evaluator pointwise(Function function) {
                                             std::vector<double>& values) {
         parallel_blocks(arguments.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) values[i] = function(arguments[i]);
+        });
+    };
+}
+
+/// Evaluates by a batch call, batch(count, pointers, out), which takes and gives floats in either
+/// precision.
+template <std::size_t columns, class Batch>
+Evaluator in_batches(Batch batch) {
+    constexpr std::size_t kRowsPerTask = 4096;
+    return [batch = std::move(batch)](const std::vector<EvalArguments>& arguments,
+                                      std::vector<double>& values) {
+        parallel_blocks(arguments.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+            const std::size_t count = end - begin;
+            std::vector<float> floats((columns + 1) * count);
+            std::array<const float*, columns> inputs;
+            for (std::size_t k = 0; k < columns; ++k) {
+                float* column = floats.data() + k * count;
+                for (std::size_t i = 0; i < count; ++i) {
+                    column[i] = static_cast<float>(arguments[begin + i][k]);
+                }
+                inputs[k] = column;
+            }
+            float* out = floats.data() + columns * count;
+            batch(count, inputs, out);
+            std::copy_n(out, count, values.begin() + static_cast<std::ptrdiff_t>(begin));
         });
     };
 }
