@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ladder of surface radiance methods, by name.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <variant>
+
+#include "medium/surface_radiance_tables.h"
+
+namespace airlight {
+
+/// The rungs, cheapest first. What each computes stands in medium/surface_radiance_tables.h and
+/// medium/surface_radiance.h. Nanoseconds per call on one core of a shared machine and largest
+/// relative error for T in [0, 10], theta in [0, pi] (bench/surface_bench.cpp):
+///
+///     method               ns       n = 1     n = 20
+///     raw-table-nearest    @rn
+///     raw-table-bilinear   @rb
+///     warped-table         @wt
+///     cubic-table          @ct
+///     exact                @ex
+enum class SurfaceMethod {
+    raw_table_nearest,
+    raw_table_bilinear,
+    warped_table,
+    cubic_table,
+    exact,
+};
+
+struct SurfaceMethodInfo {
+    SurfaceMethod method;
+    std::string_view name;  ///< as on the command line
+};
+
+/// Every method with its name, in the order of the enum.
+inline constexpr SurfaceMethodInfo kSurfaceMethods[] = {
+    {SurfaceMethod::raw_table_nearest, "raw-table-nearest"},
+    {SurfaceMethod::raw_table_bilinear, "raw-table-bilinear"},
+    {SurfaceMethod::warped_table, "warped-table"},
+    {SurfaceMethod::cubic_table, "cubic-table"},
+    {SurfaceMethod::exact, "exact"},
+};
+
+std::string_view surface_method_name(SurfaceMethod method);
+
+/// Nothing when no method has that name.
+std::optional<SurfaceMethod> surface_method_from_name(std::string_view name);
+
+struct SurfaceOptions {
+    SurfaceMethod method = SurfaceMethod::exact;
+    double exponent = 1;      ///< n in [1, 1000]
+    int table_size = 0;       ///< points per axis; 0: 64, and 128 for cubic-table
+    double table_max_t = 10;  ///< end of the T axis of the raw tables, > 0
+};
+
+/// One rung for one exponent, ready to evaluate: the constructor builds what the rung needs and
+/// throws Error (usage) when an option is outside its limits. Domain and corners as
+/// surface_radiance() in medium/surface_radiance.h; never negative. Evaluations are const and may
+/// run in parallel.
+class SurfaceEvaluator {
+  public:
+    explicit SurfaceEvaluator(const SurfaceOptions& options = {});
+
+    /// G_n(t_sp, theta_s).
+    double operator()(double t_sp, double theta_s) const;
+
+    const SurfaceOptions& options() const { return options_; }
+
+  private:
+    SurfaceOptions options_;
+    std::variant<std::monostate, RawSurfaceTable, WarpedSurfaceTable> table_;
+};
+
+}  // namespace airlight
