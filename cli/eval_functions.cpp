@@ -14,6 +14,7 @@ const std::vector<EvalFunction>& eval_functions() {
                  gaussian_functions,
                  phase_functions,
                  sh_functions,
+                 slab_functions,
                  surface_functions,
              }) {
             std::vector<EvalFunction> functions = room();

@@ -56,6 +56,7 @@ std::vector<EvalFunction> density_functions();
 std::vector<EvalFunction> gaussian_functions();
 std::vector<EvalFunction> phase_functions();
 std::vector<EvalFunction> sh_functions();
+std::vector<EvalFunction> slab_functions();
 std::vector<EvalFunction> surface_functions();
 
 }  // namespace airlight
