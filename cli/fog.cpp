@@ -17,6 +17,7 @@
 #include "cli/fog_files.h"
 #include "cli/fog_report.h"
 #include "cli/numbers.h"
+#include "cli/phase_flag.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/progress.h"
@@ -252,19 +253,19 @@ void add_fog_flags(const Command& command, FogRequest& request) {
              [&](const std::string& text) {
                  request.fog.albedo = parse_channels(text, "--albedo", {0, 1});
              });
-    add_flag(command, "--phase", "NAME", "Phase function: isotropic", [](const std::string& text) {
-        if (text != "isotropic") {
-            throw Error(ErrorCode::usage, "'" + text + "': only isotropic is implemented",
-                        "--phase");
-        }
-    });
-    add_flag(command, "--psf", "exact|factored",
-             "Point spread function: exact at this T, or the paper's T e^-T NPSF (default: exact)",
-             [&](const std::string& text) {
-                 request.fog.psf = parse_choice(text, "--psf", {"exact", "factored"}) == 0
-                                       ? PsfForm::exact
-                                       : PsfForm::factored;
-             });
+    add_flag(command, "--phase", "isotropic|rayleigh|hg:G|table:FILE",
+             "Phase function (default: isotropic); G in (-1, 1) is the mean cosine of Henyey and "
+             "Greenstein, > 0 forward; FILE is CSV with the columns angle_degrees,value",
+             [&](const std::string& text) { request.fog.phase = parse_phase(text, "--phase"); });
+    add_flag(
+        command, "--psf", "exact|factored",
+        "Point spread function: exact at this T, or the paper's T e^-T NPSF, with the NPSF of the "
+        "phase function (default: exact)",
+        [&](const std::string& text) {
+            request.fog.psf = parse_choice(text, "--psf", {"exact", "factored"}) == 0
+                                  ? PsfForm::exact
+                                  : PsfForm::factored;
+        });
     add_flag(command, "--component", "total|direct|scattered|layers",
              "What to write; layers is one EXR with all three (default: total)",
              [&](const std::string& text) {
@@ -327,6 +328,7 @@ Command declare_fog(CLI::App& program) {
         program, "fog", "IN... OUT", "Make the foggy version of an HDR environment map",
         "  airlight fog room.exr foggy.exr --optical-thickness 1\n"
         "  airlight fog day.hdr haze.exr --visibility 2000 --distance 500 --albedo 0.9\n"
+        "  airlight fog sea.exr mist.exr --optical-thickness 1 --phase hg:0.8\n"
         "  airlight fog a.exr b.exr 'foggy/{name}.exr' --density 0.01,0.012,0.015 --distance 80\n"
         "  airlight fog room.exr parts.exr --optical-thickness 2 --component layers --json\n"
         "  airlight fog - - --optical-thickness 1 < room.exr > foggy.exr\n"

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "cli/phase_flag.h"
+
 namespace airlight {
 namespace {
 
@@ -35,7 +37,7 @@ nlohmann::ordered_json file_json(const FogRecord& record) {
         record.options.albedo.size() == 1
             ? std::vector<double>(record.plan.optical_thickness.size(), record.options.albedo[0])
             : record.options.albedo;
-    json["phase"] = "isotropic";
+    json["phase"] = phase_name(record.options.phase);
     json["psf"] = psf_name(record.plan.psf);
     json["method"] = method_name(record.plan);
     json["lmax"] = record.plan.groups.empty() || record.plan.lmax < 0
@@ -82,7 +84,7 @@ std::vector<Attribute> settings_attributes(const FogRecord& record) {
     std::vector<Attribute> attributes = {
         {"airlight:opticalThickness", values_text(record.plan.optical_thickness)},
         {"airlight:albedo", values_text(record.options.albedo)},
-        {"airlight:phase", std::string("isotropic")},
+        {"airlight:phase", phase_name(record.options.phase)},
         {"airlight:psf", std::string(psf_name(record.plan.psf))},
         {"airlight:component", std::string(component_name(record.component))},
         {"airlight:method", std::string(method_name(record.plan))},

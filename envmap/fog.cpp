@@ -18,7 +18,7 @@
 #include "envmap/fog_kernel.h"
 #include "envmap/kernel_reach.h"
 #include "envmap/ring_filter.h"
-#include "sh/npsf.h"
+#include "sh/phase_psf.h"
 #include "sh/transform.h"
 
 namespace airlight {
@@ -27,8 +27,9 @@ namespace {
 // What pixel integrals and float pixels add to the error of a kernel.
 constexpr double kRingsError = 1e-6;
 // The scaled kernel's energy is at most 5 (pi^2 / 2 at T = 0): times this, even the largest float
-// scatters less than half the smallest one.
+// scatters less than half the smallest one. A backward peak may lift it by 2 / (1 + g).
 constexpr double kInvisible = 4e-85;
+constexpr double kInvisibleOfPeak = 1e-16 * kInvisible;
 // Smaller tolerances than this are left to the rings.
 constexpr double kFinestSplit = 3e-6;
 
@@ -47,10 +48,11 @@ std::vector<double> one_per_channel(const std::vector<double>& values, int chann
 // fog_kernel.h; the factored form has the shape of T = 1 at every T.
 std::vector<FogKernelGroup> kernel_groups(const FogPlan& plan) {
     std::map<double, FogKernelGroup> groups;
+    const double least = plan.phase.kind() == PhaseKind::isotropic ? kInvisible : kInvisibleOfPeak;
     for (int channel = 0; channel < plan.channels; ++channel) {
         const double thickness = plan.optical_thickness[channel];
         const double amplitude = plan.albedo[channel] * thickness * std::exp(-thickness);
-        if (amplitude < kInvisible) continue;
+        if (amplitude < least) continue;
         const double shape = plan.psf == PsfForm::factored ? 1.0 : thickness;
         FogKernelGroup& group = groups[shape];
         group.shape = shape;
@@ -107,6 +109,22 @@ void choose_split(FogPlan& plan) {
     plan.method = FogMethod::rings;
 }
 
+// The tables of another phase function, and their error.
+void measure_rings(FogPlan& plan, double tolerance) {
+    const double pixel = 2 * kPi / plan.columns * kPi / plan.rows;
+    for (FogKernelGroup& group : plan.groups) {
+        group.whole = std::make_shared<const RemainderTable>(whole_kernel(group.shape, plan.phase));
+        plan.estimated_error = std::max(
+            plan.estimated_error, whole_kernel_error(group.shape, plan.phase, *group.whole, pixel));
+    }
+    if (plan.estimated_error > tolerance) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("tolerance {} is below what is reached with this phase function at "
+                                "this size and thickness, {:.1e}",
+                                tolerance, plan.estimated_error));
+    }
+}
+
 void run_split(const Image& map, const FogPlan& plan, Image& out, Progress* progress) {
     std::vector<BandKernel> bands;
     std::vector<RingKernel> near;
@@ -122,8 +140,11 @@ void run_split(const Image& map, const FogPlan& plan, Image& out, Progress* prog
 
 void run_rings(const Image& map, const FogPlan& plan, Image& out, Progress* progress) {
     for (const FogKernelGroup& group : plan.groups) {
-        const RemainderTable table = whole_kernel(group.shape);
-        add_ring_filter(map, {{&table, group.channels, group.amplitude}}, out, progress);
+        const auto table =
+            group.whole
+                ? group.whole
+                : std::make_shared<const RemainderTable>(whole_kernel(group.shape, plan.phase));
+        add_ring_filter(map, {{table.get(), group.channels, group.amplitude}}, out, progress);
     }
 }
 
@@ -132,7 +153,7 @@ void run_sh(const Image& map, const FogPlan& plan, Image& out) {
     std::vector<double> eigenvalues(orders * plan.channels, 0.0);
     for (const FogKernelGroup& group : plan.groups) {
         const std::vector<double> lambda =
-            psf_eigenvalues_scaled(group.shape, static_cast<int>(orders));
+            psf_eigenvalues_scaled(group.shape, plan.phase, static_cast<int>(orders));
         for (std::size_t c = 0; c < group.channels.size(); ++c) {
             for (std::size_t l = 0; l < orders; ++l) {
                 eigenvalues[group.channels[c] * orders + l] = group.amplitude[c] * lambda[l];
@@ -195,6 +216,7 @@ FogPlan plan_fog(int rows, int columns, int channels, const FogOptions& options)
     plan.columns = columns;
     plan.channels = channels;
     plan.psf = options.psf;
+    plan.phase = options.phase;
     plan.optical_thickness =
         one_per_channel(options.optical_thickness, channels, "optical thickness");
     plan.albedo = one_per_channel(options.albedo, channels, "albedo");
@@ -224,6 +246,7 @@ FogPlan plan_fog(int rows, int columns, int channels, const FogOptions& options)
 
     if (plan.method == FogMethod::automatic) {
         plan.method = options.tolerance < kFinestSplit ? FogMethod::rings : FogMethod::split;
+        if (plan.phase.kind() != PhaseKind::isotropic) plan.method = FogMethod::rings;
     }
     if (plan.method == FogMethod::split) choose_split(plan);
     const std::size_t channel_rows = static_cast<std::size_t>(scattering_channels(plan)) * rows;
@@ -249,6 +272,7 @@ FogPlan plan_fog(int rows, int columns, int channels, const FogOptions& options)
             break;
         case FogMethod::rings:
             plan.estimated_error = kRingsError;
+            if (plan.phase.kind() != PhaseKind::isotropic) measure_rings(plan, options.tolerance);
             plan.radius = kPi;
             plan.ticks = ring_ticks;
             plan.working_bytes = 8 * channel_rows * columns;

@@ -10,6 +10,7 @@
 
 #include "core/progress.h"
 #include "envmap/image.h"
+#include "medium/phase_function.h"
 #include "medium/psf.h"
 
 namespace airlight {
@@ -32,6 +33,7 @@ struct FogOptions {
     std::vector<double> optical_thickness = {1.0};
     /// Single-scattering albedo sigma_s / sigma_t in [0, 1]: one value, or one per channel.
     std::vector<double> albedo = {1.0};
+    PhaseFunction phase;  ///< of the medium, the same in all channels
     PsfForm psf = PsfForm::exact;
     /// Largest relative error of a pixel's scattered light, for a map without negative pixels.
     double tolerance = 1e-3;
@@ -41,13 +43,15 @@ struct FogOptions {
 };
 
 struct SplitKernel;
+class RemainderTable;
 
 /// Channels that share one kernel shape, each with its factor on PSF_T e^T / T.
 struct FogKernelGroup {
     double shape = 0;  ///< T of the shape: 1 for the factored form
     std::vector<int> channels;
-    std::vector<double> amplitude;             ///< albedo T e^-T, one per channel
-    std::shared_ptr<const SplitKernel> split;  ///< for FogMethod::split
+    std::vector<double> amplitude;                ///< albedo T e^-T, one per channel
+    std::shared_ptr<const SplitKernel> split;     ///< for FogMethod::split
+    std::shared_ptr<const RemainderTable> whole;  ///< for FogMethod::rings, if not isotropic
 };
 
 /// What one run will do: made from the size of the map and the options, before any pixel is
@@ -56,6 +60,7 @@ struct FogPlan {
     int rows = 0, columns = 0, channels = 0;
     FogMethod method = FogMethod::automatic;
     PsfForm psf = PsfForm::exact;
+    PhaseFunction phase;
     std::vector<double> optical_thickness, albedo;  ///< one per channel
     /// Kernels of the channels that scatter at all; the others cost nothing.
     std::vector<FogKernelGroup> groups;
@@ -76,7 +81,8 @@ FogPlan plan_fog(int rows, int columns, int channels, const FogOptions& options)
 ///
 ///     albedo * sum_j L_j ∫_{pixel j} PSF_T(angle(omega, omega')) domega',
 ///
-/// with PSF_T of medium/psf.h per channel ([Sun05] sec. 6.4). Never negative for a map without
+/// with PSF_T of medium/psf.h, or that of the plan's phase function (medium/phase_airlight.h), per
+/// channel ([Sun05] sec. 6.4). Never negative for a map without
 /// negative pixels. Errors are relative to each pixel's own value, beside a sun as anywhere.
 /// Metadata is the map's. Results do not depend on the number of threads.
 ///

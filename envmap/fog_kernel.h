@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "envmap/remainder_table.h"
+#include "medium/phase_function.h"
 
 namespace airlight {
 
@@ -48,5 +49,15 @@ double split_radius(int lmax, double tolerance);
 
 /// The whole kernel PSF_T e^T / T as a remainder table, for the exact method.
 RemainderTable whole_kernel(double optical_thickness);
+
+/// The same for a phase function.
+RemainderTable whole_kernel(double optical_thickness, const PhaseFunction& phase);
+
+/// Bound on the relative error of a map's scattered light by that table: 1e-6 for the arithmetic of
+/// pixels as for an isotropic medium, more where a backward peak is narrow, 1.5e-7 / (1 + g), where
+/// the knots of a tabulated phase function show (measured on thin shells), and where the antipode
+/// of a forward peak drowns in the rounding of the peak, for pixels of that solid angle.
+double whole_kernel_error(double optical_thickness, const PhaseFunction& phase,
+                          const RemainderTable& table, double pixel);
 
 }  // namespace airlight

@@ -73,6 +73,14 @@ double integrate_edge(double a, double b, const Ratio& ratio, const F& f, int de
     return half * sum;
 }
 
+// The square of length over distance from a feature of that width at the antipode, for an edge
+// whose nearest point to the centre is at squared chord t; 0 where there is none.
+double antipode_ratio(double width, double length, double t) {
+    if (!std::isfinite(width)) return 0;
+    const double distance = std::max(0.0, std::sqrt(std::max(0.0, 4 - t)) - length);
+    return length * length / (distance * distance + width * width);
+}
+
 double square(double x) {
     return x * x;
 }
@@ -142,8 +150,10 @@ double PixelIntegrator::parallel(const RemainderTable& remainder, const Parallel
                                  std::size_t k) const {
     if (view.sine == 0) return 0;
     const double width = 2 * kPi / columns_;
-    const double ratio_squared =
-        square(view.sine * width) / (view.across + view.along * edge_half_sine_[k]);
+    const double peak = remainder.antipode_width();
+    const double nearest_t = view.across + view.along * edge_half_sine_[k];
+    const double ratio_squared = std::max(square(view.sine * width) / nearest_t,
+                                          antipode_ratio(peak, view.sine * width, nearest_t));
     if (ratio_squared <= 1 && width <= kLongestPiece) {
         const Rule& rule = rule_for(ratio_squared, width);
         const double* h = half_sine_.data() + k * kRuleNodes + rule.offset;
@@ -156,8 +166,9 @@ double PixelIntegrator::parallel(const RemainderTable& remainder, const Parallel
     }
     const auto ratio = [&](double a, double b) {
         const double nearest = a <= 0 && b >= 0 ? 0 : std::min(std::fabs(a), std::fabs(b));
-        return square(view.sine * (b - a)) /
-               (view.across + view.along * square(std::sin(0.5 * nearest)));
+        const double t = view.across + view.along * square(std::sin(0.5 * nearest));
+        return std::max(square(view.sine * (b - a)) / t,
+                        antipode_ratio(peak, view.sine * (b - a), t));
     };
     const auto integrand = [&](double phi) {
         const double h = square(std::sin(0.5 * phi));
@@ -174,7 +185,10 @@ double PixelIntegrator::meridian(const RemainderTable& remainder, const RowView&
     const double h = 4 * view.sine_i * square(std::sin(0.5 * phi));
     const double turn = -view.sine_i * std::sin(phi);
     const double height = view.bottom - view.top;
-    const double ratio_squared = square(height) / (view.nearest_across + h * view.smallest_sine);
+    const double peak = remainder.antipode_width();
+    const double nearest_t = view.nearest_across + h * view.smallest_sine;
+    const double ratio_squared =
+        std::max(square(height) / nearest_t, antipode_ratio(peak, height, nearest_t));
     if (ratio_squared <= 1 && height <= kLongestPiece) {
         const Rule& rule = rule_for(ratio_squared, height);
         double sum = 0;
@@ -192,7 +206,8 @@ double PixelIntegrator::meridian(const RemainderTable& remainder, const RowView&
     double foot = std::atan2(view.sine_i * std::cos(phi), std::cos(view.theta_i));
     if (foot < -0.5 * kPi) foot += 2 * kPi;
     const auto ratio = [&](double a, double b) {
-        return square(b - a) / chord(std::clamp(foot, a, b));
+        const double t = chord(std::clamp(foot, a, b));
+        return std::max(square(b - a) / t, antipode_ratio(peak, b - a, t));
     };
     const auto integrand = [&](double theta) { return over_sine_squared(remainder, chord(theta)); };
     return turn * integrate_edge(view.top, view.bottom, ratio, integrand);

@@ -201,6 +201,50 @@ TEST_F(Fog, MethodsAgreeWithinTheirTolerance) {
     EXPECT_FALSE(same_bits(result("f.exr"), result("e.exr")));
 }
 
+TEST_F(Fog, PhaseFunctionsAreNamedAndMakeADifference) {
+    for (const char* phase : {"isotropic", "rayleigh", "hg:0.5", "hg:-0.25"}) {
+        const Outcome outcome = fog({in(), out(std::string(phase) + ".exr"), "--optical-thickness",
+                                     "1", "--phase", phase, "--json"});
+        EXPECT_EQ(nlohmann::json::parse(outcome.out)["files"][0]["phase"], phase);
+        EXPECT_EQ(text(result(std::string(phase) + ".exr"), "phase"), phase);
+    }
+    fog({in(), out("plain.exr"), "--optical-thickness", "1"});
+    EXPECT_TRUE(same_bits(result("plain.exr"), result("isotropic.exr")));
+    EXPECT_FALSE(same_bits(result("plain.exr"), result("rayleigh.exr")));
+    EXPECT_FALSE(same_bits(result("hg:0.5.exr"), result("hg:-0.25.exr")));
+    // A table of equal values is isotropic.
+    write_bytes(directory_ / "flat.csv", "# measured\nangle_degrees,value\n0,3\n90,3\n180,3\n");
+    fog({in(), out("flat.exr"), "--optical-thickness", "1", "--phase",
+         "table:" + (directory_ / "flat.csv"), "--tolerance", "1e-6"});
+    EXPECT_EQ(text(result("flat.exr"), "phase"), "table");
+    fog({in(), out("rings.exr"), "--optical-thickness", "1", "--tolerance", "1e-6"});
+    const Image flat = result("flat.exr"), rings = result("rings.exr");
+    for (std::size_t i = 0; i < flat.pixels.size(); ++i) {
+        ASSERT_NEAR(flat.pixels[i], rings.pixels[i], 1e-6 * rings.pixels[i]);
+    }
+}
+
+TEST_F(Fog, APhaseTableThatIsNoneIsNamed) {
+    const auto refuse = [&](const std::string& csv, const std::string& sentence) {
+        write_bytes(directory_ / "bad.csv", csv);
+        expect_failure({"fog", in(), out("bad.exr"), "--optical-thickness", "1", "--phase",
+                        "table:" + (directory_ / "bad.csv")},
+                       1, (directory_ / "bad.csv") + sentence);
+    };
+    refuse("angle,value\n0,1\n", ":1: the header is not angle_degrees,value");
+    refuse("angle_degrees,value\n0,1\n", ": a phase table needs two or more angles");
+    refuse("angle_degrees,value\n0,1\n0,2\n",
+           ": angle 0.000000 of phase table entry 1 is not above");
+    refuse("angle_degrees,value\n0,1\n181,2\n", ":3: angle_degrees = 181 is not in [0, 180]");
+    refuse("angle_degrees,value\n0,1\n9,-2\n", ": value -2.000000 of phase table entry 1 is not");
+    refuse("angle_degrees,value\n0,1\n9,x\n", ":3: value = 'x' is no number");
+    refuse("angle_degrees,value\n0,1,2\n", ":2: 3 fields where the header has 2");
+    refuse("angle_degrees,value\n0,0\n9,0\n", ": all values of the phase table are 0");
+    expect_failure({"fog", in(), out("bad.exr"), "--optical-thickness", "1", "--phase",
+                    "table:" + (directory_ / "no.csv")},
+                   1, (directory_ / "no.csv") + ": cannot be opened: No such file or directory");
+}
+
 TEST_F(Fog, SeveralInputsGoWhereTheTemplateSays) {
     std::filesystem::create_directories(directory_ / "a/foggy");
     std::filesystem::copy(in(), directory_ / "a/one.two.exr");

@@ -73,8 +73,8 @@ TEST(Usage, MistakesInTheCallAreNamed) {
          "--json: cannot go with the output -"},
         {{"fog", "a.exr", "b.exr", "--optical-thickness", "1", "--order", "9"},
          "--order: goes with --method sh only"},
-        {{"fog", "a.exr", "b.exr", "--optical-thickness", "1", "--phase", "rayleigh"},
-         "--phase: 'rayleigh': only isotropic is implemented"},
+        {{"fog", "a.exr", "b.exr", "--optical-thickness", "1", "--phase", "mie"},
+         "--phase: 'mie' is none of isotropic, rayleigh, hg:G and table:FILE"},
         {{"fog", "a.exr", "b.exr", "--method", "magic"},
          "--method: 'magic' is unknown; it can be auto, split, rings or sh"},
         {{"fog", "a.exr", "b.exr", "--optical-thickness", "1", "--compression", "zap"},
@@ -112,6 +112,10 @@ TEST(Usage, NumbersAreTakenWholeAndWithinTheirLimits) {
     refuse("--visibility", "0", "is not a finite number > 0");
     refuse("--distance", "far", "is not a finite number >= 0");
     refuse("--albedo", "1.5", "is not a number in [0, 1]");
+    for (const std::string g : {"", "1", "-1", "nan", "0.8x", "2"}) {
+        expect_failure({"fog", "a.exr", "b.exr", "--optical-thickness", "1", "--phase", "hg:" + g},
+                       kUsage, "--phase: '" + g + "' is not a number in (-1, 1)");
+    }
     refuse("--tolerance", "0", "is not a number in [1e-06, 1)");
     refuse("--tolerance", "1", "is not a number in [1e-06, 1)");
     refuse("--threads", "0", "is not an integer in [1, 4096]");

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sh/phase_psf.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/constants.h"
+#include "core/error.h"
+#include "sh/npsf.h"
+
+namespace airlight {
+namespace {
+
+TEST(PhasePsfEigenvalues, OfAnIsotropicFunctionAreTheIsotropicOnes) {
+    for (const double thickness : {0.0, 0.3, 10.0}) {
+        const std::vector<double> exact = psf_eigenvalues_scaled(thickness, 300);
+        EXPECT_EQ(psf_eigenvalues_scaled(thickness, PhaseFunction(), 300), exact);
+        // The general way, on what is isotropic to rounding or by its values.
+        for (const auto& phase : {PhaseFunction::henyey_greenstein(1e-17),
+                                  PhaseFunction::tabulated({{0, 1, 2}, {3, 3, 3}})}) {
+            const std::vector<double> lambda = psf_eigenvalues_scaled(thickness, phase, 300);
+            for (int l = 0; l < 300; ++l) {
+                EXPECT_NEAR(lambda[l], exact[l], 1e-12 * exact[0]) << thickness << ' ' << l;
+            }
+        }
+    }
+}
+
+// lambda_0 at T = 0 is 2 pi int alpha p d alpha: 9 pi^2 / 32 for Rayleigh.
+TEST(PhasePsfEigenvalues, EnergyOfThinMediaHasItsClosedForm) {
+    EXPECT_NEAR(psf_eigenvalues_scaled(0, PhaseFunction::rayleigh(), 1)[0], 9 * kPi * kPi / 32,
+                1e-12);
+    for (const double g : {-0.95, -0.3, 0.6, 0.99}) {
+        const auto phase = PhaseFunction::henyey_greenstein(g);
+        double energy = 0;
+        const int steps = 200000;
+        for (int i = 0; i < steps; ++i) {
+            const double alpha = kPi * (i + 0.5) / steps;
+            energy += 2 * kPi * alpha * phase.at_angle(alpha) * kPi / steps;
+        }
+        EXPECT_NEAR(psf_eigenvalues_scaled(0, phase, 1)[0] / energy, 1, 2e-7) << g;
+    }
+}
+
+// A forward peak keeps higher bands.
+TEST(PhasePsfEigenvalues, FallMoreSlowlyTheSharperThePeak) {
+    double before = 0;
+    for (const double g : {0.0, 0.5, 0.8, 0.95}) {
+        const auto phase = PhaseFunction::henyey_greenstein(g);
+        const std::vector<double> lambda = psf_eigenvalues_scaled(1.0, phase, 20);
+        const double ratio = lambda[10] / lambda[0];
+        EXPECT_GT(ratio, before) << g;
+        before = ratio;
+    }
+}
+
+TEST(PhasePsfEigenvalues, RefuseWhatIsNoThickness) {
+    for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::infinity()}) {
+        EXPECT_THROW(psf_eigenvalues_scaled(bad, PhaseFunction::rayleigh(), 4), Error);
+    }
+}
+
+}  // namespace
+}  // namespace airlight
