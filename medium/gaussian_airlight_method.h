@@ -10,27 +10,27 @@
 
 namespace airlight {
 
-/// The rungs. Line integrals per ray for n blobs, and the relative error, median / 90th percentile
-/// / largest, on the scenes of medium/gaussian_airlight_sets.h with 1 blob and with 5
-/// (bench/gaussian_bench.cpp prints all of them):
+/// The rungs. Microseconds per ray and relative error, median / 90th percentile / largest, on 200
+/// scenes of medium/gaussian_airlight_sets.h, thin ones of 1 blob and dense ones of 5
+/// (bench/gaussian_bench.cpp; one core of a shared machine):
 ///
-///     method        lines      thin, 1             dense, 1            dense, 5
-///     fogshop       3 n        .016 / .12 / .63    .07 / .50 / 1.4     .28 / .90 / 3.3
-///     centroid      3 n        .010 / .07 / .63    .06 / .43 / 1.4     .28 / .93 / 3.5
-///     march8        16 n       5e-3 / .08 / .41    7e-3 / .16 / .38    1e-2 / .12 / .64
-///     march16       32 n       6e-4 / 6e-3 / .16   5e-4 / 1e-2 / .04   2e-3 / 1e-2 / .19
-///     march32       64 n       2e-4 / 8e-4 / 6e-3  1e-4 / 1e-3 / 1e-2  3e-4 / 2e-3 / 1e-2
-///     march64       128 n      4e-5 / 2e-4 / 3e-3  3e-5 / 3e-4 / 2e-3  8e-5 / 5e-4 / 3e-3
-///     mixed-gl8     16 n       2e-3 / .10 / .99    7e-3 / .18 / .90    1e-2 / .10 / .65
-///     mixed-gl16    32 n       3e-6 / 2e-3 / .40   2e-5 / 1e-2 / .14   1e-4 / 6e-3 / .24
-///     mixed-gl32    64 n       2e-12 / 6e-8 / 3e-3 3e-11 / 9e-6 / 5e-3 3e-9 / 2e-5 / 9e-3
-///     mixed-gl64    128 n      3e-16 / 2e-13 / 3e-7  4e-16 / 1e-10 / 1e-5  1e-15 / 2e-9 / 4e-5
-///     exact         ~2000 n    gaussian_airlight(), its tolerance
+///     method       us    thin, 1                    us    dense, 5
+///     fogshop      .39   .016 / .15 / .59           1.2   .38 / 1.1 / 7.9
+///     centroid     .43   .012 / .09 / .35           1.5   .39 / 1.1 / 9.1
+///     march8       1.3   4e-3 / .10 / .63           5.6   9e-3 / .11 / .68
+///     march16      2.6   5e-4 / 8e-3 / .14          10    1e-3 / .01 / .16
+///     march32      4.9   1e-4 / 1e-3 / 7e-3         19    2e-4 / 2e-3 / .03
+///     march64      9.1   3e-5 / 3e-4 / 2e-3         36    5e-5 / 4e-4 / 6e-3
+///     mixed-gl8    2.9   1e-3 / .13 / .66           7.2   .01 / .15 / .61
+///     mixed-gl16   5.3   8e-7 / 2e-3 / .05          13    8e-5 / 6e-3 / .07
+///     mixed-gl32   9.7   2e-13 / 2e-7 / 1e-4        24    3e-9 / 7e-6 / .01
+///     mixed-gl64   18    1e-15 / 3e-13 / 5e-8       45    5e-15 / 5e-10 / 7e-7
+///     exact        31    gaussian_airlight()        220
 ///
 /// fogshop is [Zhou07] eq. 8 to 17: each blob's density times the rest of the integrand at one
 /// point, the projection of its center on the ray; centroid takes the centroid of the density on
 /// the segment instead. Both have the attenuation by the other blobs along the fixed path light,
-/// center, viewer; that is what errs in dense media, and no number of points per blob mends it (8
+/// center, viewer; that is what errs in dense media, and no number of points per blob mends it (6
 /// points with that path: median .19 on dense scenes of 5).
 ///
 /// mixed-glN is Gauss-Legendre in u(t), half the angle that the light sees, half the way along the
