@@ -42,10 +42,10 @@ class LobeRing {
 
     double n_;
     int arc_nodes_ = 0;
-    std::array<double, 80> arc_square_;  // sinh^2 t
-    std::array<double, 80> arc_weight_;
+    std::array<double, 80> arc_square_{};  // sinh^2 t
+    std::array<double, 80> arc_weight_{};
     int terms_ = 0;
-    std::array<double, 240> coefficient_;  // of the power or Legendre series
+    std::array<double, 240> coefficient_{};  // of the power or Legendre series
 };
 
 }  // namespace detail
