@@ -33,7 +33,9 @@ void EvalCheck::read_header(const CsvRecord& record) {
 
 double EvalCheck::error(const EvalArguments& arguments, double value, double expected) const {
     if (value == expected) return 0;
-    if (function_.logarithm) return std::abs(value - expected);
+    if (function_.logarithm) {
+        return std::abs(value - expected) / std::max(1.0, std::abs(expected));
+    }
     if (function_.forward) {
         value = function_.forward(arguments, value);
         expected = function_.forward(arguments, expected);

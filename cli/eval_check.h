@@ -20,7 +20,7 @@ struct EvalErrors {
 /// Gathers errors row by row: in double against the column, in float against the default method in
 /// double at the arguments rounded to float, so that the conditioning of the problem stays out of
 /// it. Errors are relative, of values below the smallest normal number relative to that number;
-/// absolute for logarithms; of inverse functions in the forward function.
+/// absolute for logarithms up to 1; of inverse functions in the forward function.
 class EvalCheck {
   public:
     EvalCheck(const EvalFunction& function, EvalPrecision precision, std::string column);

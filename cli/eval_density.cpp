@@ -2,9 +2,12 @@
 // `airlight eval`: density fields and what they are computed with.
 #include "cli/eval_functions.h"
 #include "cli/eval_rows.h"
+#include "medium/chapman.h"
 #include "medium/height_density.h"
 #include "medium/height_density_batch.h"
 #include "medium/scaled_erfc.h"
+#include "medium/spherical_density.h"
+#include "medium/spherical_rungs.h"
 
 namespace airlight {
 namespace {
@@ -36,10 +39,94 @@ Evaluator make_exponential_height(const std::string& method, EvalPrecision preci
     });
 }
 
+Evaluator make_chapman(const std::string& name, EvalPrecision precision) {
+    const ChapmanMethod method = *chapman_method_from_name(name);
+    if (method == ChapmanMethod::exact) {
+        return in_precision<2>(precision, [](auto z, auto c) { return ln_chapman(z, c); });
+    }
+    return in_precision<2>(precision, [method](auto z, auto c) {
+        return static_cast<decltype(z)>(ln_chapman(z, c, method));
+    });
+}
+
+SphericalProfile profile_of(const EvalArguments& a) {
+    return {a[0], a[1]};
+}
+
+SphericalRay ray_of(const EvalArguments& a) {
+    return {a[2], a[3]};
+}
+
+Evaluator make_spherical_depth(const std::string& method, EvalPrecision precision) {
+    if (method == "exact" && precision == EvalPrecision::double_precision) {
+        return pointwise(
+            [](const EvalArguments& a) { return spherical_depth(profile_of(a), ray_of(a), a[4]); });
+    }
+    if (method == "flat") {
+        return in_precision<5>(precision,
+                               [](auto radius, auto scale, auto r, auto c, auto distance) {
+                                   return static_cast<decltype(r)>(
+                                       spherical_depth_flat({radius, scale}, {r, c}, distance));
+                               });
+    }
+    const auto depth =
+        method == "article"
+            ? &spherical_depth_article
+            : static_cast<float (*)(float, float, float, float, float)>(spherical_depth);
+    return in_precision<5>(EvalPrecision::float_precision,
+                           [depth](float radius, float scale, float r, float c, float distance) {
+                               return depth(radius, scale, r, c, distance);
+                           });
+}
+
+Evaluator make_spherical_distance(const std::string& method, EvalPrecision precision) {
+    if (method == "article") {
+        return in_precision<6>(
+            EvalPrecision::float_precision,
+            [](float radius, float scale, float r, float c, float limit, float depth) {
+                return spherical_distance_article(radius, scale, r, c, limit, depth);
+            });
+    }
+    if (precision == EvalPrecision::double_precision) {
+        return pointwise([](const EvalArguments& a) {
+            return spherical_distance(profile_of(a), ray_of(a), a[4], a[5]);
+        });
+    }
+    return in_precision<6>(
+        precision, [](float radius, float scale, float r, float c, float limit, float depth) {
+            return spherical_distance(radius, scale, r, c, limit, depth);
+        });
+}
+
+EvalColumn length(const std::string& name) {
+    return {name, "[0, inf)", 0, std::numeric_limits<double>::infinity(), true};
+}
+
 }  // namespace
 
 std::vector<EvalFunction> density_functions() {
     return {
+        {"chapman",
+         "ln C(z, cosTheta), Chapman's function",
+         {not_negative("z"), cosine("cosTheta")},
+         names_of(kChapmanMethods),
+         make_chapman,
+         nullptr,
+         true},
+        {"optdepth_sphere",
+         "column of exp(-(|x| - R) / H) along a ray",
+         {length("R"), not_negative("H"), length("r"), cosine("cosTheta"), not_negative("dist")},
+         names_of(kSphericalMethods),
+         make_spherical_depth},
+        {"sample_sphere",
+         "distance at which optdepth_sphere is tau",
+         {length("R"), not_negative("H"), length("r"), cosine("cosTheta"), not_negative("maxDist"),
+          not_negative("tau")},
+         {"exact", "article"},
+         make_spherical_distance,
+         [](const EvalArguments& a, double distance) {
+             return spherical_depth(profile_of(a), ray_of(a), distance);
+         }},
         {"exp2erfc",
          "exp(x^2) erfc(x)",
          {{"x", "[-inf, inf]", -std::numeric_limits<double>::infinity()}},

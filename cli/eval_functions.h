@@ -44,7 +44,8 @@ struct EvalFunction {
     /// For inverse functions: the forward function at this row's arguments and a value of the
     /// inverse. Errors are judged in it.
     std::function<double(const EvalArguments& arguments, double value)> forward = nullptr;
-    /// The value is a logarithm: its error is absolute, which is the relative one behind it.
+    /// The value is a logarithm: up to 1 its error is absolute, which is the relative one behind
+    /// it; beyond it is relative, for a double has no more digits.
     bool logarithm = false;
 };
 

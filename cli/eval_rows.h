@@ -37,8 +37,16 @@ inline EvalColumn quarter_angle(const std::string& name) {
     return {name, "[0, pi/2]", 0, 1.5707963705062866};
 }
 
+/// GCC 12 takes a pair of conversions from double to float and back for nothing when it vectorises
+/// them (-O2, SLP); the volatile keeps the rounding.
+template <class Real>
+Real rounded_to(double argument) {
+    const volatile Real rounded = static_cast<Real>(argument);
+    return rounded;
+}
+
 inline double in_argument_precision(double argument, EvalPrecision precision) {
-    return precision == EvalPrecision::float_precision ? static_cast<float>(argument) : argument;
+    return precision == EvalPrecision::float_precision ? rounded_to<float>(argument) : argument;
 }
 
 /// Evaluates row by row, in parallel: `function(const EvalArguments&)` gives the value.
@@ -83,7 +91,7 @@ namespace detail {
 template <class Real, class Function, std::size_t... I>
 double call_in(const Function& function, const EvalArguments& arguments,
                std::index_sequence<I...>) {
-    return function(static_cast<Real>(arguments[I])...);
+    return function(rounded_to<Real>(arguments[I])...);
 }
 
 }  // namespace detail

@@ -28,6 +28,24 @@ inline TwoDoubles two_product(double a, double b) {
     return {product, std::fma(a, b, -product)};
 }
 
+// Twice a double's digits; products and roots to 1e-31.
+inline TwoDoubles operator+(TwoDoubles a, TwoDoubles b) {
+    const TwoDoubles sum = two_sum(a.hi, b.hi);
+    return two_sum(sum.hi, sum.lo + (a.lo + b.lo));
+}
+
+inline TwoDoubles operator*(TwoDoubles a, TwoDoubles b) {
+    const TwoDoubles product = two_product(a.hi, b.hi);
+    return two_sum(product.hi, product.lo + (a.hi * b.lo + a.lo * b.hi));
+}
+
+/// Of a number that is not negative.
+inline TwoDoubles square_root(TwoDoubles a) {
+    const double root = std::sqrt(a.hi);
+    if (root == 0) return {0, 0};
+    return two_sum(root, (std::fma(-root, root, a.hi) + a.lo) / (2 * root));
+}
+
 /// mantissa * 2^exponent; the mantissa is kept near 1, so products of a few never over- or
 /// underflow.
 struct Scaled {

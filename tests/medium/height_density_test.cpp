@@ -130,7 +130,7 @@ TEST(HeightDensity, TheArticlesExponentialColumnFailsWhereOursHolds) {
     int lost = 0, broken = 0, ours = 0, rows = 0;
     for (const auto& row : reference_rows("rectexp.csv", 5, 540)) {
         float a[4];
-        for (int i = 0; i < 4; ++i) a[i] = static_cast<float>(row[i]);
+        for (int i = 0; i < 4; ++i) a[i] = rounded(row[i]);
         const double exact =
             exponential_height_depth(double{a[0]}, double{a[1]}, double{a[2]}, double{a[3]});
         if (exact < 1e-37 || exact > 1e37) continue;

@@ -4,7 +4,7 @@
 
 Usage: python3 make_density_corners.py TABLE [COUNT] [SEED] > TABLE_corners.csv
 
-TABLE is one of exp2erfc, rectexp, rectexp_inverse, linear, linear_inverse. Draws COUNT rows (default: the number in the shipped file) and evaluates
+TABLE is one of chapman, exp2erfc, linear, optdepth_sphere, rectexp. Draws COUNT rows (default: the number in the shipped file) and evaluates
 them at the exact doubles that are printed. Formulas are the plain ones of the definition, at
 thousands of digits where they cancel.
 """
@@ -184,10 +184,121 @@ def linear_rows(rng, count):
             done += 1
 
 
+def legendre_nodes(n):
+    """Gauss-Legendre on [0, 1]."""
+    nodes = []
+    for i in range(n):
+        x = mp.cos(mp.pi * (i + mp.mpf(3) / 4) / (n + mp.mpf(1) / 2))
+        for _ in range(8):
+            previous, current = mp.mpf(1), x
+            for k in range(1, n):
+                previous, current = current, ((2 * k + 1) * x * current - k * previous) / (k + 1)
+            slope = n * (x * current - previous) / (x * x - 1)
+            x -= current / slope
+        nodes.append(((1 + x) / 2, 1 / ((1 - x * x) * slope * slope)))
+    return nodes
+
+
+def rising_column(periapsis, start, end, scale):
+    """int_start^end e^{-(sqrt(periapsis^2 + u^2) - lowest) / scale} du, 0 <= start <= end, lowest
+    the root at the start; by u = periapsis sinh(w) on short panels."""
+    lowest = mp.sqrt(periapsis ** 2 + start ** 2)
+    reach = mp.sqrt((lowest + 110 * scale) ** 2 - periapsis ** 2)
+    end = min(end, reach)
+    if end <= start:
+        return mp.mpf(0)
+    if periapsis == 0:
+        return -scale * mp.expm1(-(end - start) / scale)
+    w0, w1 = mp.asinh(start / periapsis), mp.asinh(end / periapsis)
+    panels = 8 + int(2 * (w1 - w0))
+    total = mp.mpf(0)
+    for k in range(panels):
+        for x, weight in NODES:
+            distance = periapsis * mp.cosh(w0 + (w1 - w0) * (k + x) / panels)
+            total += weight * mp.exp(-(distance - lowest) / scale) * distance
+    return total * (w1 - w0) / panels
+
+
+def spherical_column(radius, scale, r, cosine, dist):
+    """(ln of the density at the densest point, the column over that density)"""
+    radius, scale, r, cosine = map(mp.mpf, (radius, scale, r, cosine))
+    dist = mp.mpf(dist)
+    start, periapsis = r * cosine, r * mp.sqrt(1 - cosine ** 2)
+    end = start + dist
+    if start < 0 < end:
+        low = periapsis
+        value = rising_column(periapsis, mp.mpf(0), -start, scale)
+        value += rising_column(periapsis, mp.mpf(0), end, scale)
+    else:
+        near, far = sorted((abs(start), abs(end)))
+        low = mp.sqrt(periapsis ** 2 + near ** 2)
+        value = rising_column(periapsis, near, far, scale)
+    return (radius - low) / scale, value
+
+
+def cosines(rng):
+    return rng.choice([
+        lambda: rng.uniform(-1, 1),
+        lambda: sign(rng) * 10 ** rng.uniform(-16, 0),
+        lambda: sign(rng) * (1 - 10 ** rng.uniform(-16, 0)),
+        lambda: rng.choice([-1.0, 1.0, 0.0]),
+    ])()
+
+
+def chapman_rows(rng, count):
+    print("z,cosTheta,lnC")
+    for _ in range(count):
+        z = rng.choice([
+            lambda: 10 ** rng.uniform(-3, 8),
+            lambda: 10 ** rng.uniform(-12, 20),
+            lambda: rng.uniform(0, 10),
+        ])()
+        cosine = cosines(rng)
+        with mp.workdps(DIGITS + 20):
+            exponent, value = spherical_column(z, 1, z, cosine, mp.inf)
+            logarithm = exponent + mp.log(value)
+            # e^{-110} is left out.
+            print(f"{z!r},{cosine!r},{show(logarithm) if logarithm > 1e-40 else 0}")
+
+
+def optdepth_sphere_rows(rng, count):
+    print("R,H,r,cosTheta,dist,tau_over_seaLvlAtt")
+    done = 0
+    while done < count:
+        scale = 10 ** rng.uniform(-2, 5)
+        radius = rng.choice([lambda: 6371000.0, lambda: scale * 10 ** rng.uniform(-3, 9)])()
+        r = rng.choice([
+            lambda: abs(radius + rng.uniform(-30, 30) * scale),
+            lambda: radius,
+            lambda: radius * rng.uniform(0, 3),
+            lambda: radius + 10 ** rng.uniform(-6, 0),
+        ])()
+        cosine = cosines(rng)
+        middle = abs(r * cosine)
+        dist = rng.choice([
+            lambda: scale * 10 ** rng.uniform(-9, 3),
+            lambda: middle * (1 + sign(rng) * 10 ** rng.uniform(-16, 0)),
+            lambda: middle * rng.uniform(0, 4),
+            lambda: rng.uniform(0, 1),
+            lambda: math.inf,
+        ])()
+        with mp.workdps(DIGITS + 20):
+            exponent, value = spherical_column(radius, scale, r, cosine, dist)
+            value *= mp.exp(exponent)
+            if in_range(value):
+                print(f"{radius!r},{scale!r},{r!r},{cosine!r},{dist!r},{show(value)}")
+                done += 1
+
+
+with mp.workdps(DIGITS + 20):
+    NODES = legendre_nodes(40)
+
 # Makers of rows, and how many the shipped file has.
 TABLES = {
+    "chapman": (chapman_rows, 200),
     "exp2erfc": (exp2erfc_rows, 120),
     "linear": (linear_rows, 300),
+    "optdepth_sphere": (optdepth_sphere_rows, 300),
     "rectexp": (rectexp_rows, 300),
 }
 
