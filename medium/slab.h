@@ -17,7 +17,7 @@ namespace airlight {
 /// w_dot_wl   cosine between w and w_l, in [-1, 1]
 ///
 /// Where the surface refracts, w_dot_n is that of the direction inside, and for the distant light
-/// wl_dot_n too (refracted_cosine() in medium/refraction.h). The three cosines are not checked
+/// wl_dot_n too (surface_crossing() in medium/refraction.h). The three cosines are not checked
 /// against each other: the integrals exist for all.
 ///
 /// NaN or an argument outside its domain gives NaN; a cosine that rounding put beyond 1 by up to
