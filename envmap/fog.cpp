@@ -94,7 +94,8 @@ void choose_split(FogPlan& plan) {
         bool reached = true;
         plan.estimated_error = plan.radius = 0;
         for (FogKernelGroup& group : plan.groups) {
-            std::optional<SplitKernel> split = make_split_kernel(group.shape, lmax, plan.tolerance);
+            std::optional<SplitKernel> split =
+                make_split_kernel(group.shape, lmax, plan.tolerance, plan.phase);
             reached = reached && split.has_value();
             if (!reached) break;
             plan.estimated_error = std::max(plan.estimated_error, split->error);
@@ -246,7 +247,6 @@ FogPlan plan_fog(int rows, int columns, int channels, const FogOptions& options)
 
     if (plan.method == FogMethod::automatic) {
         plan.method = options.tolerance < kFinestSplit ? FogMethod::rings : FogMethod::split;
-        if (plan.phase.kind() != PhaseKind::isotropic) plan.method = FogMethod::rings;
     }
     if (plan.method == FogMethod::split) choose_split(plan);
     const std::size_t channel_rows = static_cast<std::size_t>(scattering_channels(plan)) * rows;

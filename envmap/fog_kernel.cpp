@@ -10,6 +10,7 @@
 
 #include "core/constants.h"
 #include "envmap/chord.h"
+#include "envmap/phase_singularity.h"
 #include "medium/phase_airlight.h"
 #include "medium/psf.h"
 #include "sh/npsf.h"
@@ -61,21 +62,68 @@ Tails tails_for(double tolerance) {
     return {a, 1.03 * a + 0.05};
 }
 
-SplitKernel build(double thickness, int lmax, Tails tails) {
+// A kernel to split, by its parts.
+class Shape {
+  public:
+    Shape(double thickness, const PhaseFunction& phase)
+        : thickness_(thickness), phase_(phase), singularity_(PhaseSingularity::of(phase)) {
+        energy_ = is_isotropic() ? psf_eigenvalues_scaled(thickness, 1)[0]
+                                 : 2 * kPi * whole_kernel(thickness, phase).total();
+    }
+
+    bool is_isotropic() const { return phase_.kind() == PhaseKind::isotropic; }
+    /// Whether its singular part is known.
+    bool splits() const { return is_isotropic() || singularity_.has_value(); }
+    double thickness() const { return thickness_; }
+    double energy() const { return energy_; }
+
+    double exact(double angle) const { return psf_scaled(thickness_, angle, phase_); }
+
+    double near(double alpha, double t) const {
+        if (!singularity_) return near_kernel(thickness_, alpha, t);
+        const double z = alpha * alpha * t;
+        if (z > kEndOfTail) return 0;
+        const double s = std::sqrt(t), sine = s * std::sqrt(std::max(0.0, 1 - 0.25 * t));
+        if (sine == 0) return 0;
+        const double h = thickness_ * sine;
+        return std::exp(0.5 * thickness_ * t) / sine *
+               (singularity_->even(h) * std::erfc(alpha * s) -
+                0.5 * singularity_->odd(h) * boost::math::expint(1, z));
+    }
+
+    /// Whether the near part's series hold as far as it reaches.
+    bool holds(double alpha) const {
+        if (!singularity_) return true;
+        return thickness_ * std::sqrt(kThinTail) / alpha < singularity_->limit();
+    }
+
+  private:
+    // Beyond this erfc(sqrt(z)) is below 1e-20.
+    static constexpr double kEndOfTail = 45;
+    // And beyond this below 2e-10, which takes what series past their limit are off by.
+    static constexpr double kThinTail = 20;
+
+    double thickness_;
+    PhaseFunction phase_;
+    std::optional<PhaseSingularity> singularity_;
+    double energy_;
+};
+
+SplitKernel build(const Shape& shape, int lmax, Tails tails) {
+    const double thickness = shape.thickness();
     const double radius = 2 * tails.a * tails.b / lmax;
     const double alpha = tails.a / radius;
     const PolarRule rule = gauss_legendre(lmax + 64 + lmax / 4);
     std::vector<double> far(rule.angle.size());
     for (std::size_t i = 0; i < far.size(); ++i) {
-        far[i] = psf_scaled(thickness, rule.angle[i]) -
-                 near_kernel(thickness, alpha, squared_chord(rule.angle[i]));
+        far[i] = shape.exact(rule.angle[i]) - shape.near(alpha, squared_chord(rule.angle[i]));
     }
-    SplitKernel split{thickness, radius, zonal_eigenvalues(rule, far, lmax + 1),
-                      RemainderTable([&](double t) { return near_kernel(thickness, alpha, t); },
-                                     radius * radius)};
+    SplitKernel split{
+        thickness, radius, zonal_eigenvalues(rule, far, lmax + 1),
+        RemainderTable([&](double t) { return shape.near(alpha, t); }, radius * radius)};
     // The near part was cut at the radius: what it lost goes back in proportion, so that a constant
     // map sees the energy of the exact kernel.
-    const double energy = psf_eigenvalues_scaled(thickness, 1)[0] - split.eigenvalues[0];
+    const double energy = shape.energy() - split.eigenvalues[0];
     const double scale = energy / (2 * kPi * split.near.total());
     split.near.scale(scale);
     for (int l = 0; l <= lmax; ++l) split.eigenvalues[l] *= taper(l, lmax);
@@ -84,8 +132,8 @@ SplitKernel build(double thickness, int lmax, Tails tails) {
     const std::vector<double> smooth = zonal_evaluate(split.eigenvalues, angles);
     for (std::size_t i = 0; i < angles.size(); ++i) {
         const double t = squared_chord(angles[i]);
-        const double near = t < radius * radius ? scale * near_kernel(thickness, alpha, t) : 0.0;
-        const double exact = psf_scaled(thickness, angles[i]);
+        const double near = t < radius * radius ? scale * shape.near(alpha, t) : 0.0;
+        const double exact = shape.exact(angles[i]);
         const double rounding = kArithmeticError * std::max(1.0, std::fabs(near) / exact);
         const double error = std::fabs(near + smooth[i] - exact) / exact + rounding;
         assert(std::isfinite(error));
@@ -125,14 +173,22 @@ double split_radius(int lmax, double tolerance) {
     return 2 * tails.a * tails.b / lmax;
 }
 
-std::optional<SplitKernel> make_split_kernel(double optical_thickness, int lmax, double tolerance) {
+std::optional<SplitKernel> make_split_kernel(double optical_thickness, int lmax, double tolerance,
+                                             const PhaseFunction& phase) {
+    const Shape shape(optical_thickness, phase);
+    if (!shape.splits()) return std::nullopt;
     Tails tails = tails_for(tolerance);
+    double before = std::numeric_limits<double>::infinity();
     // A dense medium damps the kernel away from its peak, so that the tails weigh more.
     // With alpha = lmax / (2 b) the near part falls off like exp(-(alpha^2 - T/2) s^2).
     while (2 * tails.a * tails.b / lmax < 1 &&
-           static_cast<double>(lmax) * lmax > 2.2 * tails.b * tails.b * optical_thickness) {
-        SplitKernel split = build(optical_thickness, lmax, tails);
+           static_cast<double>(lmax) * lmax > 2.2 * tails.b * tails.b * optical_thickness &&
+           shape.holds(lmax / (2 * tails.b))) {
+        SplitKernel split = build(shape, lmax, tails);
         if (split.error <= tolerance) return split;
+        // A peak narrower than the bands does not care for longer tails.
+        if (!shape.is_isotropic() && split.error > 0.97 * before) break;
+        before = split.error;
         const double grow = split.error > 4 * tolerance ? 1.08 : 1.03;
         tails.a *= grow;
         tails.b *= grow;

@@ -24,6 +24,10 @@ namespace airlight {
 /// tails meet a tolerance e once radius * lmax is about 2 ln(1/e). The last sixteenth of the bands
 /// is tapered, which keeps the truncation from piling up at the antipode.
 ///
+/// Other phase functions have the same two singular terms with their own even and odd factors
+/// (envmap/phase_singularity.h), cut in the same way. What else Henyey-Greenstein's peak adds falls
+/// like |g|^l, so that no split is found for a g whose power |g|^lmax is above the tolerance.
+///
 /// Deviates: [Sun05] sec. 6.4 convolves with all of PSF in bands, which rings around a sun.
 struct SplitKernel {
     double optical_thickness = 0;     ///< T of the shape
@@ -41,8 +45,10 @@ struct SplitKernel {
 double near_kernel(double optical_thickness, double alpha, double t);
 
 /// Builds the split with bands 0 … lmax whose measured error is at most `tolerance`; the radius is
-/// what that takes, or nothing if that would be 1 or more, or T too large for so few bands.
-std::optional<SplitKernel> make_split_kernel(double optical_thickness, int lmax, double tolerance);
+/// what that takes, or nothing if that would be 1 or more, T too large or the phase function too
+/// sharp for so few bands, or tabulated.
+std::optional<SplitKernel> make_split_kernel(double optical_thickness, int lmax, double tolerance,
+                                             const PhaseFunction& phase = {});
 
 /// The near part's radius that a tolerance takes with lmax bands, before measuring.
 double split_radius(int lmax, double tolerance);

@@ -7,9 +7,11 @@
 #include <cstring>
 #include <numeric>
 #include <random>
+#include <tuple>
 
 #include "core/error.h"
 #include "envmap/fog.h"
+#include "envmap/phase_singularity.h"
 #include "medium/phase_airlight.h"
 #include "sh/phase_psf.h"
 #include "tests/envmap/fog_reference.h"
@@ -85,6 +87,54 @@ TEST(FogWithPhase, RingsAgreeWithBruteForceToTheirStatedError) {
                                            {hg(-0.4), 1.0}}) {
         EXPECT_LE(worst_error(map, options_for(phase, thickness, 1e-6, FogMethod::rings)), 1e-6)
             << phase.g() << ' ' << thickness;
+    }
+}
+
+TEST(FogWithPhase, SplitAgreesWithRingsAtEveryPixel) {
+    const Image map = test_map(254, 127);
+    for (const auto& [phase, thickness, tolerance] :
+         {std::tuple{PhaseFunction::rayleigh(), 1.0, 1e-4},
+          {hg(0.5), 0.05, 1e-3},
+          {hg(0.8), 1.0, 1e-3},
+          {hg(0.8), 1.0, 1e-5},
+          {hg(0.9), 10.0, 1e-2},
+          {hg(-0.5), 3.0, 1e-3},
+          {hg(0.3), 15.0, 1e-3}}) {
+        const FogPlan exact =
+            plan_fog(127, 254, 3, options_for(phase, thickness, 1e-6, FogMethod::rings));
+        const FogPlan plan = plan_fog(127, 254, 3, options_for(phase, thickness, tolerance));
+        ASSERT_EQ(plan.method, FogMethod::split) << phase.g() << ' ' << thickness;
+        const Image truth = scattered_light(map, exact), image = scattered_light(map, plan);
+        double worst = 0;
+        for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+            worst = std::max<double>(worst, std::fabs(image.pixels[i] / truth.pixels[i] - 1.0));
+        }
+        EXPECT_LE(worst, plan.estimated_error) << phase.g() << ' ' << thickness;
+        EXPECT_LE(plan.estimated_error, tolerance);
+    }
+}
+
+TEST(FogWithPhase, PeaksTooSharpForTheBandsAndTablesGoByRings) {
+    EXPECT_EQ(plan_fog(64, 128, 3, options_for(hg(0.995), 1.0, 1e-3)).method, FogMethod::rings);
+    EXPECT_EQ(plan_fog(64, 128, 3, options_for(droplets(), 1.0, 1e-3)).method, FogMethod::rings);
+}
+
+TEST(PhaseSingularity, OfAnIsotropicFunctionIsTheClosedForm) {
+    const PhaseSingularity singular = *PhaseSingularity::of(hg(1e-17));
+    for (double h = 0; h < singular.limit(); h += 0.37) {
+        // Both series cancel like e^h.
+        EXPECT_NEAR(singular.even(h), 0.25 * std::cos(h), 1e-15 * std::exp(h) + 1e-15) << h;
+        EXPECT_NEAR(singular.odd(h), std::sin(h) / (2 * kPi), 1e-15 * std::exp(h) + 1e-15) << h;
+    }
+    EXPECT_FALSE(PhaseSingularity::of(PhaseFunction()).has_value());
+}
+
+// The scaled kernel tends to int p / gamma, and its next term is p(pi) T 2 ln(gamma).
+TEST(PhaseSingularity, HoldsTheFirstTwoTermsOfThePeak) {
+    for (const auto& phase : {PhaseFunction::rayleigh(), hg(0.7), hg(0.95), hg(-0.6)}) {
+        const PhaseSingularity singular = *PhaseSingularity::of(phase);
+        EXPECT_NEAR(psf_scaled(2.0, 1e-9, phase) * 1e-9 / singular.even(0), 1, 1e-6);
+        EXPECT_NEAR(singular.odd(1e-6) / (2e-6 * phase.at_angle(kPi)), 1, 1e-10);
     }
 }
 
