@@ -27,7 +27,7 @@ struct SurfaceCrossing {
 /// grazing included; else T = 0 at grazing.
 ///
 /// Relative accuracy 1e-15 of R, T and the cosine, but where the problem itself loses digits: next
-/// to the critical angle and of R next to Brewster's. 20 ns.
+/// to the critical angle and of R next to Brewster's. 44 ns.
 SurfaceCrossing surface_crossing(double cosine, double ior_from, double ior_to);
 
 /// SurfaceCrossing::beam from both cosines, for those who have them by geometry; they and the

@@ -27,7 +27,7 @@ namespace airlight {
 ///     = (1 - e^{-sigma_t (1 + c) s}) / (sigma_t (1 + c)),  c = w_dot_n / wl_dot_n   [m].
 ///
 /// s for sigma_t = 0, whatever the cosines; else 0 for wl_dot_n = 0, the light along the surface.
-/// Relative accuracy 4e-16. 12 ns.
+/// Relative accuracy 4e-16. 22 ns.
 double slab_distant(double sigma_t, double s, double w_dot_n, double wl_dot_n);
 float slab_distant(float sigma_t, float s, float w_dot_n, float wl_dot_n);
 
@@ -46,7 +46,7 @@ float slab_distant(float sigma_t, float s, float w_dot_n, float wl_dot_n);
 /// must.
 /// Accuracy: relative 1e-14 plus 1e-16 times the exponent (measured against 34 digits on 589 rows,
 /// cosines down to 1e-300, 1 - |w_dot_wl| down to 1e-16, l from 1e-8 to 1e8). Float: one rounding.
-/// 1.0 us on average, a panel of 16 nodes costs .35 us.
+/// .4 us where one panel will do, 1.5 us on average over lengths of all scales.
 ///
 /// Deviates: [Slab] has gamma = arccos(w . w_l) for the airlight, which is pi less the angle.
 double slab_near(double sigma_t, double s, double l, double w_dot_n, double wl_dot_n,

@@ -31,7 +31,7 @@ double slab_angle(double g, double end, double beyond);
 /// ln(y + rho) while the light enters the medium at a grazing angle nearby, and in the w of
 /// y + g = q sinh(w) from there, for dy / H^2 = dw / H and H = q cosh(w) has no scale of its own.
 /// A panel ends where the singularities of the integrand (the light's image off the real axis, the
-/// pole of f at y = -rho) or a growth of the exponent by 12 tell it to; the integral, where its
+/// pole of f at y = -rho) or a growth of the exponent by 6 tell it to; the integral, where its
 /// remainder has a bound under 1e-17 of the sum.
 double slab_integral(const SlabRay& ray, int nodes);
 

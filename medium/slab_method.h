@@ -7,18 +7,18 @@
 
 namespace airlight {
 
-/// The rungs of slab_near() (medium/slab.h), cheapest first. Nanoseconds per call and errors
+/// The rungs of slab_near() (medium/slab.h). Nanoseconds per call and errors
 /// relative to the exact value on the sets of bench/slab_bench.cpp, max / median:
 ///
-///     method            ns     A (thin)          B (all)
-///     thin
-///     equiangular-gl8
-///     equiangular-gl16
-///     march64
-///     panels-gl6
-///     panels-gl8
-///     panels-gl12
-///     exact
+///     method            ns A    B      A (thin)            B (any)
+///     thin              51     57     .80   / 1.4e-2      2.1    / 8.6e-2
+///     equiangular-gl8   200    205    1.1e-4 / 2e-16      1      / 1.2e-7
+///     panels-gl6        250    770    1.8e-6 / 7e-15      2.3e-5 / 2.3e-9
+///     panels-gl8        285    910    1.5e-8 / 2e-16      2.9e-7 / 1.7e-12
+///     equiangular-gl16  340    350    6.1e-8 / 2e-16      1      / 2e-15
+///     panels-gl12       350    1180   1.1e-12 / 1e-16     3.4e-11 / 2e-16
+///     exact             420    1470   its own is under 1e-13
+///     march64           540    545    1.4e-3 / 1.2e-5     1      / 5.5e-4
 ///
 /// `thin` is the paper's approximation. `equiangular` is one Gauss-Legendre rule in the angle that
 /// the light sees, cut where sigma_t x = 40: the falloff is exact, the exponent need not be.

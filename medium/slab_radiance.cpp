@@ -198,8 +198,10 @@ double adaptive(const F& f, double end) {
 double refracted_integral(const SlabMedium& medium, const View& view, const glm::dvec3& to_light,
                           double l, double g, double length) {
     const double sigma_t = medium.scattering + medium.absorption;
-    // What lies deeper is under e^-45 of what lies at the surface.
-    const double end = std::min({length, 45 / sigma_t, 1e12 * l});
+    // What lies deeper is under e^-45 of what lies at the surface, or nothing at all where light
+    // enters by less than the whole surface.
+    const double deepest = medium.ior_outside > medium.ior_inside ? 745 : 45;
+    const double end = std::min({length, deepest / sigma_t, 1e12 * l});
     const RefractedLight light(medium, view, to_light);
     const Substitution s(l, g);
     return adaptive([&](double w) { return light(s.x_of(w)) * s.slope(w); }, s.w_of(end));

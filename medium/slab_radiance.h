@@ -52,8 +52,8 @@ double slab_radiance(const SlabMedium& medium, const SlabSegment& segment,
 /// u and k the lengths of the light's path outside and inside, c_1 and c_2 its cosines. With equal
 /// indices both are slab_near().
 ///
-/// Relative accuracy of `refracted` 1e-9 (adaptive Gauss-Legendre; measured against a rule of 2e5
-/// points: 1e-8, which is that rule's), 5 to 40 us; of `straight` that of slab_near(), 1 us.
+/// Relative accuracy of `refracted` 1e-12 (adaptive Gauss-Legendre; measured against rules of twice
+/// the nodes on 3000 rays), 11 us; of `straight` that of slab_near(), .6 us.
 ///
 /// Deviates: [Slab] leaves out the spreading of the refracted beam and the surface's transmittance.
 double slab_radiance_of_point(const SlabMedium& medium, const SlabSegment& segment,
