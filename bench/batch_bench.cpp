@@ -29,6 +29,8 @@
 #include "medium/height_density_batch.h"
 #include "medium/psf.h"
 #include "medium/psf_batch.h"
+#include "medium/spherical_density.h"
+#include "medium/spherical_density_batch.h"
 
 namespace airlight {
 namespace {
@@ -202,6 +204,33 @@ void add_gaussian() {
     });
 }
 
+// Rays in the Earth's air: from 8 to 40 km, none into the ground, one metre to 1000 km long.
+void add_spherical() {
+    std::mt19937 bits(5);
+    std::uniform_real_distribution<float> unit(0, 1);
+    const float radius = 6371000, scale_height = 8000;
+    Columns columns(3);
+    for (std::size_t i = 0; i < kRays; ++i) {
+        columns[0].push_back(8000 + 32000 * unit(bits));
+        columns[1].push_back(-0.05f + 1.05f * unit(bits) * unit(bits));
+        columns[2].push_back(std::pow(10.0f, 6 * unit(bits)));
+    }
+    const SphericalProfile profile = {radius, scale_height};
+    const auto exact = [=](double altitude, double c, double distance) {
+        return spherical_depth_at_altitude(profile, altitude, c, distance);
+    };
+    const Inputs inputs(columns, [=](const double* x) { return exact(x[0], x[1], x[2]); });
+    add_scalar<3>("spherical/exact", inputs, exact);
+    add_scalar<3>("spherical/float", inputs, [=](double altitude, double c, double distance) {
+        return spherical_depth_at_altitude(radius, scale_height, static_cast<float>(altitude),
+                                           static_cast<float>(c), static_cast<float>(distance));
+    });
+    add_batch("spherical/batch", inputs, [=](const Columns& x, float* out) {
+        spherical_depth_at_altitude_batch(radius, scale_height, kRays, x[0].data(), x[1].data(),
+                                          x[2].data(), out);
+    });
+}
+
 struct Measured {
     double time = 0;
     double max_error = 0;
@@ -247,6 +276,7 @@ int main(int argc, char** argv) {
     airlight::add_psf();
     airlight::add_height();
     airlight::add_gaussian();
+    airlight::add_spherical();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     airlight::Reporter reporter;
@@ -260,7 +290,8 @@ int main(int argc, char** argv) {
         reporter.ratio("airlight/batch-march64" + set + "/AVX2", "airlight/batch" + set + "/AVX2",
                        "");
     }
-    for (const std::string name : {"psf", "psf_scaled", "exponential_height", "gaussian_line"}) {
+    for (const std::string name :
+         {"psf", "psf_scaled", "exponential_height", "gaussian_line", "spherical"}) {
         reporter.ratio(name + "/exact", name + "/batch/AVX2", "");
     }
     benchmark::Shutdown();

@@ -7,6 +7,7 @@
 #include "medium/height_density_batch.h"
 #include "medium/scaled_erfc.h"
 #include "medium/spherical_density.h"
+#include "medium/spherical_density_batch.h"
 #include "medium/spherical_rungs.h"
 
 namespace airlight {
@@ -57,7 +58,21 @@ SphericalRay ray_of(const EvalArguments& a) {
     return {a[2], a[3]};
 }
 
+std::vector<std::string> spherical_depth_methods() {
+    std::vector<std::string> names = names_of(kSphericalMethods);
+    names.emplace_back("batch");
+    return names;
+}
+
 Evaluator make_spherical_depth(const std::string& method, EvalPrecision precision) {
+    if (method == "batch") {
+        // Its sphere is one for all rays, here every row has its own.
+        return in_batches<5>([](std::size_t count, const auto& x, float* out) {
+            for (std::size_t i = 0; i < count; ++i) {
+                spherical_depth_batch(x[0][i], x[1][i], 1, x[2] + i, x[3] + i, x[4] + i, out + i);
+            }
+        });
+    }
     if (method == "exact" && precision == EvalPrecision::double_precision) {
         return pointwise(
             [](const EvalArguments& a) { return spherical_depth(profile_of(a), ray_of(a), a[4]); });
@@ -116,7 +131,7 @@ std::vector<EvalFunction> density_functions() {
         {"optdepth_sphere",
          "column of exp(-(|x| - R) / H) along a ray",
          {length("R"), not_negative("H"), length("r"), cosine("cosTheta"), not_negative("dist")},
-         names_of(kSphericalMethods),
+         spherical_depth_methods(),
          make_spherical_depth},
         {"sample_sphere",
          "distance at which optdepth_sphere is tau",
