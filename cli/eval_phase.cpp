@@ -1,16 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 // `airlight eval`: phase functions, and airlight and the point spread function with them.
+#include <cassert>
 #include <cmath>
+#include <optional>
 
 #include "cli/eval_functions.h"
 #include "cli/eval_rows.h"
 #include "medium/phase_airlight.h"
+#include "medium/phase_airlight_method.h"
 
 namespace airlight {
 namespace {
 
 EvalColumn asymmetry() {
     return {"g", "(-1, 1)", std::nextafter(-1.0, 0.0), std::nextafter(1.0, 0.0)};
+}
+
+std::vector<std::string> airlight_hg_methods() {
+    std::vector<std::string> names = {"exact"};
+    for (const PhaseAirlightMethodInfo& info : kPhaseAirlightMethods) {
+        if (info.name != names[0]) names.emplace_back(info.name);
+    }
+    return names;
+}
+
+Evaluator make_airlight_hg(const std::string& name, EvalPrecision precision) {
+    const std::optional<PhaseAirlightMethod> method = phase_airlight_method_from_name(name);
+    assert(method.has_value());
+    // The rungs exist in double only: a float result is theirs, rounded.
+    return in_precision<4>(precision, [=](auto gamma, auto t_sv, auto t_vp, auto g) {
+        return static_cast<decltype(gamma)>(airlight_hg(gamma, t_sv, t_vp, g, *method));
+    });
 }
 
 }  // namespace
@@ -34,12 +54,8 @@ std::vector<EvalFunction> phase_functions() {
         {"airlight_hg",
          "L_a / (beta^2 I_0), Henyey-Greenstein",
          {angle("gamma"), not_negative("Tsv"), not_negative("Tvp"), asymmetry()},
-         {"exact"},
-         [](const std::string&, EvalPrecision precision) {
-             return in_precision<4>(precision, [](auto gamma, auto t_sv, auto t_vp, auto g) {
-                 return airlight_hg(gamma, t_sv, t_vp, g);
-             });
-         }},
+         airlight_hg_methods(),
+         make_airlight_hg},
         {"airlight_rayleigh",
          "L_a / (beta^2 I_0), Rayleigh",
          {angle("gamma"), not_negative("Tsv"), not_negative("Tvp")},

@@ -113,13 +113,36 @@ bool add_panels(const Map& map, double y, double x_begin, double x_end, const In
     return true;
 }
 
-template <class Integrand>
-double integrate(const Map& map, double y, double x_end, const Integrand& f) {
-    if (std::isinf(y)) return 0;
-    double sum = 0;
-    add_panels(map, std::fabs(y), 0, x_end, f, sum);
-    return sum;
-}
+// By as many panels as it takes.
+struct Composite {
+    template <class Integrand>
+    double operator()(const Map& map, double y, double x_end, const Integrand& f) const {
+        if (std::isinf(y)) return 0;
+        double sum = 0;
+        add_panels(map, std::fabs(y), 0, x_end, f, sum);
+        return sum;
+    }
+};
+
+// By one panel over all that can be seen.
+struct SinglePanel {
+    QuadratureRule rule;
+
+    template <class Integrand>
+    double operator()(const Map& map, double y, double x_end, const Integrand& f) const {
+        // Past 1/epsilon^2 even 1/x^2 has no weight left.
+        const double x = std::min({x_end, kLastExponent / std::fabs(y), 1e18});
+        const double half = 0.5 * std::log1p(map.e_of(x));
+        double sum = 0;
+        for (int i = 0; i < rule.count; ++i) {
+            for (const double node : {rule.nodes[i].x, -rule.nodes[i].x}) {
+                const Point p = map.at(std::expm1(half * (1 + node)));
+                sum += rule.nodes[i].w * f(p) * std::exp(-std::fabs(y) * p.x);
+            }
+        }
+        return half * sum;
+    }
+};
 
 // Below this the phase function is that of the viewer's end, and X may be denormal.
 constexpr double kVanishing = 1e-250;
@@ -137,7 +160,7 @@ double mean(double at_viewer, double y, double x_end, const Integral& integral) 
 double rayleigh_integral(double y, const RayAngle& angle, double x_end) {
     const Map map(angle, 1);
     const double s2 = map.s * map.s;
-    return integrate(map, y, x_end, [=](const Point& p) {
+    return Composite()(map, y, x_end, [=](const Point& p) {
         // The squares of cos(alpha/2) and sin(alpha/2), which sum to 1.
         const double r = 1 / (p.root * p.root), a = s2 * r, b = p.u * p.u * r;
         return 1.5 * (a * a + b * b) / p.root;
@@ -173,9 +196,9 @@ double table_integral(const PhaseTable& table, double y, const RayAngle& angle, 
     return sum;
 }
 
-}  // namespace
-
-double hg_ray_integral(double g, double y, const RayAngle& angle, double x_end) {
+// g < 0 and g >= 0 differ in the scale that keeps singularities away.
+template <class Rule>
+double hg_integral(const Rule& integrate, double g, double y, const RayAngle& angle, double x_end) {
     const double ratio = (1 - g) / (1 + g);
     if (g < 0) {
         const Map map(angle, 1);
@@ -192,6 +215,16 @@ double hg_ray_integral(double g, double y, const RayAngle& angle, double x_end) 
     return integrate(map, y, x_end, [=](const Point& p) {
         return factor * (length(map.s, p.u) / p.root) / p.root;
     });
+}
+
+}  // namespace
+
+double hg_ray_integral(double g, double y, const RayAngle& angle, double x_end) {
+    return hg_integral(Composite(), g, y, angle, x_end);
+}
+
+double hg_panel_integral(double g, double y, const RayAngle& angle, double x_end, int nodes) {
+    return hg_integral(SinglePanel{gauss_legendre(nodes)}, g, y, angle, x_end);
 }
 
 double mean_hg_ray_integral(double g, double y, const RayAngle& angle, double x_end) {

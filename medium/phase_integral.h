@@ -28,5 +28,8 @@ double mean_phase_ray_integral(const PhaseFunction& phase, double y, const RayAn
 double hg_ray_integral(double g, double y, const RayAngle& angle, double x_end);
 double mean_hg_ray_integral(double g, double y, const RayAngle& angle, double x_end);
 
+/// The Henyey-Greenstein integral on a single panel of `nodes` nodes, 6 ... 32 as gauss_legendre().
+double hg_panel_integral(double g, double y, const RayAngle& angle, double x_end, int nodes);
+
 }  // namespace detail
 }  // namespace airlight

@@ -10,6 +10,7 @@
 
 #include "core/constants.h"
 #include "medium/airlight.h"
+#include "medium/phase_airlight_method.h"
 #include "medium/psf.h"
 #include "medium/quadrature.h"
 #include "tests/medium/reference_rows.h"
@@ -303,6 +304,36 @@ TEST(PhaseAirlight, TablesSweepWithoutNan) {
             return "";
         },
         kSweepInputs / 5);
+}
+
+// The errors that medium/phase_airlight_method.h quotes, on rays like those of its sets.
+TEST(PhaseAirlight, RungsHaveTheirErrors) {
+    const double limits[] = {5, 0.05, 2e-3, 3e-7, 0};
+    for (const PhaseAirlightMethodInfo& info : kPhaseAirlightMethods) {
+        EXPECT_EQ(phase_airlight_method_from_name(info.name), info.method);
+        double worst = 0;
+        for (std::size_t i = 0; i < 3000; ++i) {
+            SweepDraw draw(i);
+            const double g = draw.uniform(-0.95, 0.95), gamma = draw.uniform(0.02, 3.1);
+            const double t_sv = draw.uniform(0.01, 10), t_vp = draw.uniform(0.01, 10);
+            const double value = airlight_hg(gamma, t_sv, t_vp, g, info.method);
+            worst = std::max(worst, relative_error(value, airlight_hg(gamma, t_sv, t_vp, g)));
+        }
+        EXPECT_LE(worst, limits[static_cast<int>(info.method)]) << info.name;
+        // Not the exact method by another name.
+        EXPECT_EQ(worst > 0, info.method != PhaseAirlightMethod::exact) << info.name;
+        for (const double gamma : {0.0, 5e-324, 1e-8, 1.0, kPi}) {
+            for (const double t : {0.0, 5e-324, 1e-300, 1.0, 1e300, kInfinity}) {
+                for (const double v : {0.0, 5e-324, 0.5 * t, t, 1e300, kInfinity}) {
+                    EXPECT_GE(airlight_hg(gamma, t, v, 0.9, info.method), 0)
+                        << info.name << ' ' << gamma << ' ' << t << ' ' << v;
+                }
+            }
+        }
+        EXPECT_TRUE(std::isnan(airlight_hg(1.0, 1.0, 1.0, 1.0, info.method)));
+        EXPECT_TRUE(std::isnan(airlight_hg(1.0, -1.0, 1.0, 0.5, info.method)));
+    }
+    EXPECT_FALSE(phase_airlight_method_from_name("magic").has_value());
 }
 
 TEST(PhaseAirlight, CornersAndRefusals) {
