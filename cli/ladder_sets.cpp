@@ -26,6 +26,80 @@ std::vector<ClosedFormSet> airlight_ladder_sets() {
         {"B", "airlight-b", "optical thicknesses below 10, angles 0 … π", airlight_inputs('B')}};
 }
 
+// Draws by the standard's generator, whose numbers are the same everywhere.
+class Draws {
+  public:
+    explicit Draws(std::uint64_t seed) : bits_(seed) {}
+    double uniform(double lo, double hi) {
+        return lo + (hi - lo) * (static_cast<double>(bits_() >> 11) + 0.5) * 0x1p-53;
+    }
+    double decades(double lo, double hi) { return std::pow(10.0, uniform(lo, hi)); }
+
+  private:
+    std::mt19937_64 bits_;
+};
+
+template <class Draw>
+std::vector<EvalArguments> draw_inputs(std::uint64_t seed, int count, const Draw& draw) {
+    Draws draws(seed);
+    std::vector<EvalArguments> inputs;
+    for (int i = 0; i < count; ++i) inputs.push_back(draw(draws));
+    return inputs;
+}
+
+std::vector<ClosedFormSet> surface_ladder_sets() {
+    std::vector<ClosedFormSet> sets;
+    for (const double exponent : {1.0, 20.0}) {
+        sets.push_back({exponent == 1 ? "n = 1" : "n = 20",
+                        exponent == 1 ? "surface" : "surface-20",
+                        exponent == 1 ? "a Lambertian surface, n = 1; T below 10, θ in 0 … π"
+                                      : "a Phong lobe, n = 20; T below 10, θ in 0 … π",
+                        draw_inputs(3, 2000, [exponent](Draws& draws) -> EvalArguments {
+                            const double t = draws.uniform(0, 10);
+                            return {t, draws.uniform(0, kPi), exponent};
+                        })});
+    }
+    return sets;
+}
+
+std::vector<ClosedFormSet> slab_ladder_sets() {
+    return {{"slab", "slab", "thicknesses s σ_t in 1e-2 … 10, light at 0.1 … 10 of s",
+             draw_inputs(4, 2000, [](Draws& draws) -> EvalArguments {
+                 const double s = 1, sigma_t = draws.decades(-2, 1), l = draws.decades(-1, 1);
+                 const double a = draws.uniform(0.05, 1), b = draws.uniform(0.05, 1);
+                 const double phi = draws.uniform(0, kPi);
+                 const double w_dot_wl =
+                     a * b + std::sqrt((1 - a * a) * (1 - b * b)) * std::cos(phi);
+                 return {sigma_t, s, l, a, b, w_dot_wl};
+             })}};
+}
+
+std::vector<ClosedFormSet> chapman_ladder_sets() {
+    return {{"earth", "chapman", "z in 300 … 6000 (scale heights of 1 … 20 km), θ below 90°",
+             draw_inputs(5, kInputs, [](Draws& draws) -> EvalArguments {
+                 return {draws.uniform(300, 6000), draws.uniform(0, 1)};
+             })}};
+}
+
+std::vector<ClosedFormSet> atmosphere_ladder_sets() {
+    const auto rays = [](double shortest, double longest) {
+        return draw_inputs(6, kInputs, [=](Draws& draws) -> EvalArguments {
+            const double r = 6371000 + draws.uniform(0, 60000);
+            return {6371000, 8000, r, draws.uniform(-0.05, 1), draws.decades(shortest, longest)};
+        });
+    };
+    return {{"10 km", "atmosphere", "rays of 1 … 1000 km in the air of the earth", rays(3, 6)},
+            {"10 m", "atmosphere-short", "segments of 1 … 100 m in the air of the earth",
+             rays(0, 2)}};
+}
+
+std::vector<ClosedFormSet> gaussian_ladder_sets() {
+    return {{"blob", "gaussian", "rays past a blob of scale 1 at up to 2 from its middle",
+             draw_inputs(7, kInputs, [](Draws& draws) -> EvalArguments {
+                 return {1, 1, draws.uniform(0, 2), draws.uniform(-3, 8), draws.uniform(0, 8)};
+             })}};
+}
+
 }  // namespace
 
 const std::vector<ClosedFormLadder>& closed_form_ladders() {

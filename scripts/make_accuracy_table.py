@@ -20,9 +20,9 @@ INTRODUCTION = """\
 Largest, 99th percentile and median error of every function of `airlight eval`, by method and
 precision, over the reference rows in tests/reference, hard cases included. The first method of a
 function is its default. Errors are relative; of `chapman`, whose values are logarithms, absolute;
-of inverse functions, relative in the forward function. Double is compared with the reference values, float with
-the default method in double at the arguments rounded to float. In brackets: rows for which the
-method has no finite value though there is one.
+of inverse functions, relative in the forward function. Double is compared with the reference
+values, float with the default method in double at the arguments rounded to float. In brackets: rows
+for which the method has no finite value though there is one.
 
 Most rows are chosen to be hard, so the rungs of a ladder look worse here than on the rays of a
 picture; their cost, and their errors on ordinary input, are in the headers of medium/ and in
@@ -49,8 +49,12 @@ def measure(program, table, method, precision):
 
 
 def number(value):
-    # JSON has no infinity.
-    return "inf" if value is None else "0" if value == 0 else f"{value:.1e}".replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
+    if value is None:
+        return "inf"  # which JSON does not have
+    if value == 0:
+        return "0"
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{mantissa}e{int(exponent)}" if abs(int(exponent)) > 1 else f"{value:.2g}"
 
 
 def main():
@@ -61,14 +65,14 @@ def main():
     for row in csv.DictReader(run(program, "--list").splitlines()):
         methods.setdefault(row["function"], []).append(row["method"])
     lines = [INTRODUCTION,
-             "| function | values | rows | method | double: max / p99 / median | float: max / p99 / median |",
+             "| function | values | rows | method | double: max / p99 / median | float: the same |",
              "| --- | --- | --- | --- | --- | --- |"]
     for table in rows_of("index.csv"):
         for i, method in enumerate(methods[table["function"]]):
             double, report = measure(program, table, method, "double")
             single, _ = measure(program, table, method, "float")
-            lines.append(f"| {table['function'] if i == 0 else ''} | {table['file'] if i == 0 else ''} "
-                         f"| {report['rows'] if i == 0 else ''} | {method} | {double} | {single} |")
+            cells = ([table["function"], table["file"], str(report["rows"])] if i == 0 else [""] * 3)
+            lines.append("| " + " | ".join(cells + [method, double, single]) + " |")
     print("\n".join(lines))
 
 
