@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // `airlight eval`: light that reaches a surface by way of the fog.
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
-#include <utility>
+#include <optional>
+#include <vector>
 
 #include "cli/eval_functions.h"
 #include "cli/eval_rows.h"
@@ -27,48 +30,67 @@ std::vector<std::string> surface_methods() {
     return names;
 }
 
-/// Evaluates rows (T, theta, n) with one table for each exponent. `make(n)` builds a
-/// function(T, theta).
-Evaluator by_exponent(std::function<std::function<double(double, double)>(double)> make,
-                      EvalPrecision precision) {
-    using Tables = std::map<double, std::function<double(double, double)>>;
-    return [=, tables = std::make_shared<Tables>()](const std::vector<EvalArguments>& arguments,
-                                                    std::vector<double>& values) {
+/// One exponent, ready to evaluate: values of count pairs (T, theta).
+using SurfaceRows = std::function<void(
+    const std::vector<double>& t, const std::vector<double>& theta, std::vector<double>& values)>;
+
+/// Evaluates rows (T, theta, n) exponent by exponent, each of which `make` builds once.
+Evaluator by_exponent(std::function<SurfaceRows(double exponent)> make, EvalPrecision precision) {
+    using Kept = std::map<double, SurfaceRows>;
+    return [=, kept = std::make_shared<Kept>()](const std::vector<EvalArguments>& arguments,
+                                                std::vector<double>& values) {
         std::map<double, std::vector<std::size_t>> rows;
         for (std::size_t i = 0; i < arguments.size(); ++i) {
             const double n = in_argument_precision(arguments[i][2], precision);
             values[i] = std::nan("");
             if (!std::isnan(n)) rows[n].push_back(i);
         }
-        for (const auto& [n, of_exponent] : rows) {
-            if (tables->count(n) == 0) {
-                if (tables->size() >= kKeptTables) tables->clear();
-                tables->emplace(n, make(n));
+        std::vector<double> t, theta, found;
+        for (const auto& [n, indices] : rows) {
+            if (kept->count(n) == 0) {
+                if (kept->size() >= kKeptTables) kept->clear();
+                kept->emplace(n, make(n));
             }
-            const auto& table = tables->at(n);
-            for (const std::size_t i : of_exponent) {
-                const double value = table(in_argument_precision(arguments[i][0], precision),
-                                           in_argument_precision(arguments[i][1], precision));
-                values[i] = in_argument_precision(value, precision);
+            t.clear();
+            theta.clear();
+            for (const std::size_t i : indices) {
+                t.push_back(in_argument_precision(arguments[i][0], precision));
+                theta.push_back(in_argument_precision(arguments[i][1], precision));
+            }
+            found.resize(indices.size());
+            kept->at(n)(t, theta, found);
+            for (std::size_t k = 0; k < indices.size(); ++k) {
+                values[indices[k]] = in_argument_precision(found[k], precision);
             }
         }
     };
 }
 
+SurfaceRows batch_rows(double exponent) {
+    const auto table = std::make_shared<const SurfaceBatchTable>(exponent);
+    return [table](const std::vector<double>& t, const std::vector<double>& theta,
+                   std::vector<double>& values) {
+        const std::vector<float> t_float(t.begin(), t.end());
+        const std::vector<float> theta_float(theta.begin(), theta.end());
+        std::vector<float> out(t.size());
+        table->surface_batch(t.size(), t_float.data(), theta_float.data(), out.data());
+        std::copy(out.begin(), out.end(), values.begin());
+    };
+}
+
+SurfaceRows table_rows(SurfaceMethod method, double exponent) {
+    SurfaceOptions options;
+    options.method = method;
+    options.exponent = exponent;
+    const auto rung = std::make_shared<const SurfaceEvaluator>(options);
+    return [rung](const std::vector<double>& t, const std::vector<double>& theta,
+                  std::vector<double>& values) {
+        for (std::size_t i = 0; i < t.size(); ++i) values[i] = (*rung)(t[i], theta[i]);
+    };
+}
+
 Evaluator make_surface(const std::string& name, EvalPrecision precision) {
-    if (name == "batch") {
-        return by_exponent(
-            [](double n) {
-                const auto table = std::make_shared<const SurfaceBatchTable>(n);
-                return [table](double t, double theta) {
-                    const float in[] = {static_cast<float>(t), static_cast<float>(theta)};
-                    float out;
-                    table->surface_batch(1, in, in + 1, &out);
-                    return double{out};
-                };
-            },
-            EvalPrecision::float_precision);
-    }
+    if (name == "batch") return by_exponent(batch_rows, EvalPrecision::float_precision);
     const std::optional<SurfaceMethod> method = surface_method_from_name(name);
     assert(method.has_value());
     if (*method == SurfaceMethod::exact) {
@@ -77,15 +99,7 @@ Evaluator make_surface(const std::string& name, EvalPrecision precision) {
         });
     }
     // The tables exist in double only: a float result is theirs, rounded.
-    return by_exponent(
-        [method = *method](double n) {
-            SurfaceOptions options;
-            options.method = method;
-            options.exponent = n;
-            const auto rung = std::make_shared<const SurfaceEvaluator>(options);
-            return [rung](double t, double theta) { return (*rung)(t, theta); };
-        },
-        precision);
+    return by_exponent([method = *method](double n) { return table_rows(method, n); }, precision);
 }
 
 }  // namespace
