@@ -144,7 +144,7 @@ TEST(Ladder, MistakesAndOldReportsAreRefusedBeforeAnythingIsMeasured) {
     const std::string directory = scratch.path();
     expect_failure({"ladder", "fog"}, 2, "the output is missing: give -o DIR");
     expect_failure({"ladder", "clouds", "-o", directory}, 2,
-                   "unknown effect 'clouds'; it can be fog or airlight");
+                   "unknown effect 'clouds'; it can be fog, airlight, ");
     for (const char* size : {"512", "512x512", "16x8", "4096x2048", "512x256x3", "0x0"}) {
         expect_failure({"ladder", "-o", directory, "--size", size}, 2, "--size: ");
     }
