@@ -30,12 +30,13 @@ struct EvalRequest {
     std::string check;  ///< the column to compare with; empty for none
 };
 
-// Returns the number of rows without a value.
+// Returns the number of rows without a value; or, where a method's NaN is one of the answers that
+// are counted, without arguments.
 std::size_t report_failures(const std::vector<CsvRecord>& records, std::size_t first,
-                            const EvalRows& rows) {
+                            const EvalRows& rows, bool nan_counts = true) {
     std::size_t failures = 0;
     for (std::size_t i = 0; i < rows.values.size(); ++i) {
-        if (!std::isnan(rows.values[i])) continue;
+        if (!std::isnan(rows.values[i]) || (rows.reasons[i].empty() && !nan_counts)) continue;
         ++failures;
         spdlog::error("{}:{}: {}", kEvalInput, records[first + i].line,
                       rows.reasons[i].empty() ? "has no value" : rows.reasons[i]);
@@ -93,7 +94,7 @@ void print_check(const EvalFunction& function, const EvalRequest& request,
                         const EvalRows& rows, const char*) {
                         if (first == 1) check.read_header(records[0]);
                         check.add(records, first, rows);
-                        return report_failures(records, first, rows);
+                        return report_failures(records, first, rows, false);
                     });
     const EvalErrors errors = check.errors();
     const char* precision =
