@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "medium/exact_sum.h"
+#include "medium/height_column.h"
 
 namespace airlight {
 namespace {
@@ -64,23 +64,32 @@ double triangle(Scaled density, Scaled gradient) {
 
 }  // namespace
 
-double exponential_height_depth(double height, double up, double distance, double falloff) {
-    if (!std::isfinite(height) || !std::isfinite(falloff) || !is_direction(up) || !(distance >= 0))
-        return kNan;
-    if (distance == 0) return 0;
+namespace detail {
+
+Scaled exponential_height_column(double height, double up, double distance, double falloff) {
+    if (distance == 0) return {};
     const Scaled rate = scaled(falloff) * scaled(up);
     if (std::isinf(distance)) {
-        if (!(rate.mantissa > 0)) return kInfinity;
-        return value(exponential_at(height, up, 0, falloff) / rate);
+        if (!(rate.mantissa > 0)) return {kInfinity, 0};
+        return exponential_at(height, up, 0, falloff) / rate;
     }
     const double decay = value(rate * scaled(distance));
     const Scaled densest = exponential_at(height, up, decay < 0 ? distance : 0, falloff);
     const double y = std::abs(decay);
     if (y < 1) {
         const double phi = y == 0 ? 1 : -std::expm1(-y) / y;
-        return value(densest * scaled(distance) * scaled(phi));
+        return densest * scaled(distance) * scaled(phi);
     }
-    return std::abs(value(densest * scaled(std::expm1(-y)) / rate));
+    const Scaled column = densest * scaled(std::expm1(-y)) / rate;
+    return {std::abs(column.mantissa), column.exponent};
+}
+
+}  // namespace detail
+
+double exponential_height_depth(double height, double up, double distance, double falloff) {
+    if (!std::isfinite(height) || !std::isfinite(falloff) || !is_direction(up) || !(distance >= 0))
+        return kNan;
+    return value(detail::exponential_height_column(height, up, distance, falloff));
 }
 
 double exponential_height_distance(double depth, double height, double up, double falloff) {

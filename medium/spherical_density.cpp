@@ -9,6 +9,7 @@
 #include "medium/depth_inverse.h"
 #include "medium/exact_sum.h"
 #include "medium/height_density.h"
+#include "medium/spherical_path.h"
 
 namespace airlight {
 namespace {
@@ -17,6 +18,7 @@ using detail::DepthState;
 using detail::ExactSum;
 using detail::Scaled;
 using detail::scaled;
+using detail::SphericalPath;
 using detail::TwoDoubles;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -35,26 +37,8 @@ bool is_profile(double radius, double scale_height) {
     return radius >= 0 && std::isfinite(radius) && scale_height > 0;
 }
 
-// A start whose distance from the center and whose altitude have twice a double's digits.
-struct Start {
-    TwoDoubles r;
-    TwoDoubles altitude;
-};
-
-Start start_at_distance(double radius, double r) {
-    return {{r, 0}, detail::two_sum(r, -radius)};
-}
-
-Start start_at_altitude(double radius, double altitude) {
-    return {detail::two_sum(radius, altitude), {altitude, 0}};
-}
-
-// e^{-altitude / H}.
-Scaled density_at(TwoDoubles altitude, double scale_height) {
-    const double hi = altitude.hi / scale_height;
-    if (!std::isfinite(hi)) return detail::scaled_exp(-hi);
-    const double rest = std::fma(-hi, scale_height, altitude.hi) + altitude.lo;
-    return detail::scaled_exp(-hi, -rest / scale_height);
+SphericalPath path_at_distance(double radius, double r, double c) {
+    return detail::spherical_path({r, 0}, detail::two_sum(r, -radius), r == 0 ? 1 : c);
 }
 
 TwoDoubles times_power(TwoDoubles a, int exponent) {
@@ -70,59 +54,18 @@ TwoDoubles hypotenuse(TwoDoubles a, TwoDoubles b) {
     return times_power(square_root(a * a + b * b), exponent);
 }
 
-// The ray beside its periapsis.
-struct Path {
-    TwoDoubles along;      ///< from the periapsis to the start, negative while the ray falls
-    TwoDoubles periapsis;  ///< distance of the center from the line
-};
-
-Path path_of(TwoDoubles r, double c) {
-    const TwoDoubles sine = square_root(detail::two_sum(1, -c) * detail::two_sum(1, c));
-    return {r * TwoDoubles{c, 0}, r * sine};
-}
-
-// The column of a segment, from whichever point of it is densest.
-Scaled column(const Start& start, double radius, double scale_height, double c, double distance) {
-    if (distance == 0) return {};
-    if (std::isinf(scale_height)) return scaled(distance);
-    const double t = distance / scale_height;
-    const auto from = [&](TwoDoubles altitude, double integral) {
-        const Scaled length =
-            t < kShort ? scaled(distance) : scaled(scale_height) * scaled(integral);
-        return length * density_at(altitude, scale_height);
-    };
-    if (start.r.hi == 0) return from(start.altitude, detail::curved_column(0, 1, t));
-    if (c >= 0) {
-        return from(start.altitude, detail::curved_column(start.r.hi / scale_height, c, t));
-    }
-    const Path path = path_of(start.r, c);
-    const TwoDoubles end =
-        std::isinf(distance) ? TwoDoubles{distance, 0} : path.along + TwoDoubles{distance, 0};
-    if (end.hi <= 0) {
-        const TwoDoubles low = hypotenuse(end, path.periapsis);
-        const double c_low = low.hi == 0 ? 1 : std::min(1.0, -end.hi / low.hi);
-        return from(low + TwoDoubles{-radius, 0},
-                    detail::curved_column(low.hi / scale_height, c_low, t));
-    }
-    const double z = path.periapsis.hi / scale_height;
-    return from(path.periapsis + TwoDoubles{-radius, 0},
-                detail::curved_column(z, 0, -path.along.hi / scale_height) +
-                    detail::curved_column(z, 0, end.hi / scale_height));
-}
-
 bool is_ray(const SphericalRay& ray) {
     return ray.center_distance >= 0 && std::isfinite(ray.center_distance) &&
            is_cosine(ray.cos_zenith);
 }
 
 // A distance beyond which the ray gathers nothing that a double could show.
-double last_distance(const SphericalRay& ray, double scale_height) {
-    const double r = ray.center_distance, c = ray.cos_zenith;
-    const double climb = 50 * scale_height, along = r * c;
-    const double lowest = c < 0 ? r * std::sqrt((1 - c) * (1 + c)) : r;
+double last_distance(const SphericalPath& path, double scale_height) {
+    const double climb = 50 * scale_height, along = path.along.hi;
+    const double lowest = along < 0 ? path.periapsis.hi : path.r.hi;
     const double chord = std::sqrt(climb) * std::sqrt(2 * lowest + climb);
     const double distance =
-        c < 0 ? chord - along : chord * (chord / (std::hypot(along, chord) + along));
+        along < 0 ? chord - along : chord * (chord / (std::hypot(along, chord) + along));
     return distance < 1e308 ? distance : 1e308;
 }
 
@@ -142,13 +85,13 @@ struct Atmosphere {
             return r / each.scale_height <= kLargestZ;
         });
     }
-    Scaled depth(const Start& start, double c, double distance) const {
+    Scaled depth(const SphericalPath& path, double distance) const {
         Scaled sum = {};
         for (std::size_t i = 0; i < count; ++i) {
             const SphericalComponent& each = components[i];
             if (each.extinction == 0) continue;
-            const Scaled term =
-                scaled(each.extinction) * column(start, radius, each.scale_height, c, distance);
+            const Scaled term = scaled(each.extinction) *
+                                detail::spherical_column(path, radius, each.scale_height, distance);
             sum = std::isinf(term.mantissa) ? term : ExactSum().add(sum).add(term).sum();
         }
         return sum;
@@ -164,47 +107,50 @@ struct Atmosphere {
     }
 };
 
-double distance_of(const Atmosphere& air, const SphericalRay& ray, double max_distance,
+double distance_of(const Atmosphere& air, const SphericalPath& path, double max_distance,
                    double depth) {
-    if (!air.is_valid() || !is_ray(ray) || !(max_distance >= 0) || !(depth >= 0) ||
-        !air.takes(ray.center_distance))
-        return kNan;
     if (depth == 0) return 0;
-    const double r = ray.center_distance, c = r == 0 ? 1 : ray.cos_zenith;
-    const Start start = start_at_distance(air.radius, r);
-    const Scaled total = air.depth(start, c, max_distance);
+    const Scaled total = air.depth(path, max_distance);
     const double part = value(scaled(depth) / total);
     if (total.mantissa == 0 || part > 1 + kFullDepth) return kInfinity;
     if (part >= 1) return max_distance;
-    const double hi = std::min(max_distance, last_distance(ray, air.highest_scale()));
+    const double hi = std::min(max_distance, last_distance(path, air.highest_scale()));
 
     const Scaled sought = scaled(depth);
     const auto state = [&](double t) {
-        const double along = r * c + t;
-        const double there = std::hypot(along, r * std::sqrt((1 - c) * (1 + c)));
-        const TwoDoubles rise = {t * ((r * c + along) / (there + r)), 0};
+        const double along = path.along.hi + t, there = std::hypot(along, path.periapsis.hi);
+        const TwoDoubles rise = {t * ((path.along.hi + along) / (there + path.r.hi)), 0};
         Scaled density = {}, slope = {};
         for (std::size_t i = 0; i < air.count; ++i) {
             const SphericalComponent& each = air.components[i];
             if (each.extinction == 0) continue;
-            const Scaled here =
-                scaled(each.extinction) * density_at(start.altitude + rise, each.scale_height);
+            const Scaled here = scaled(each.extinction) *
+                                detail::spherical_density(path.altitude + rise, each.scale_height);
             density = ExactSum().add(density).add(here).sum();
             slope = ExactSum().add(slope).add(here / scaled(each.scale_height)).sum();
         }
-        const Scaled reached = air.depth(start, c, t);
+        const Scaled reached = air.depth(path, t);
         const Scaled excess =
             ExactSum().add(reached).add({-sought.mantissa, sought.exponent}).sum();
         return DepthState{value(reached / sought), value(excess / density),
                           -value(slope / density) * (there > 0 ? along / there : 1)};
     };
-    const DepthState first = state(0);
     // As if the atmosphere were flat.
+    const DepthState first = state(0);
     const double falloff = -first.slope;
     double guess =
         exponential_height_distance(-first.step, 0.0, falloff < 0 ? -1.0 : 1.0, std::abs(falloff));
     if (!(guess < hi)) guess = hi * part;
     return detail::depth_inverse(state, 0, hi, guess);
+}
+
+double checked_distance(const Atmosphere& air, const SphericalRay& ray, double max_distance,
+                        double depth) {
+    if (!air.is_valid() || !is_ray(ray) || !(max_distance >= 0) || !(depth >= 0) ||
+        !air.takes(ray.center_distance))
+        return kNan;
+    return distance_of(air, path_at_distance(air.radius, ray.center_distance, ray.cos_zenith),
+                       max_distance, depth);
 }
 
 // The start's altitude and the lengths are exact enough in double where the arguments are floats.
@@ -240,22 +186,75 @@ float fast_depth(double radius, double scale_height, double r, double altitude, 
 
 }  // namespace
 
+namespace detail {
+
+SphericalPath spherical_path(TwoDoubles r, TwoDoubles altitude, double c) {
+    // Rays that rise are done without their periapsis.
+    const TwoDoubles sine = c >= 0 ? TwoDoubles{std::sqrt((1 - c) * (1 + c)), 0}
+                                   : square_root(two_sum(1, -c) * two_sum(1, c));
+    return {r, altitude, r * TwoDoubles{c, 0}, r * sine};
+}
+
+Scaled spherical_density(TwoDoubles altitude, double scale_height) {
+    if (std::isinf(scale_height)) return scaled(1);
+    const double hi = altitude.hi / scale_height;
+    if (!std::isfinite(hi)) return scaled_exp(-hi);
+    const double rest = std::fma(-hi, scale_height, altitude.hi) + altitude.lo;
+    return scaled_exp(-hi, -rest / scale_height);
+}
+
+// From whichever point of the segment is densest.
+Scaled spherical_column(const SphericalPath& path, double radius, double scale_height,
+                        double distance) {
+    if (distance == 0) return {};
+    if (std::isinf(scale_height)) return scaled(distance);
+    const double t = distance / scale_height;
+    const auto from = [&](TwoDoubles altitude, double integral) {
+        const Scaled length =
+            t < kShort ? scaled(distance) : scaled(scale_height) * scaled(integral);
+        return length * spherical_density(altitude, scale_height);
+    };
+    if (path.along.hi >= 0) {
+        const double c = path.r.hi == 0 ? 1 : std::min(1.0, path.along.hi / path.r.hi);
+        return from(path.altitude, curved_column(path.r.hi / scale_height, c, t));
+    }
+    const TwoDoubles end =
+        std::isinf(distance) ? TwoDoubles{distance, 0} : path.along + TwoDoubles{distance, 0};
+    if (end.hi <= 0) {
+        const TwoDoubles low = hypotenuse(end, path.periapsis);
+        const double c = low.hi == 0 ? 1 : std::min(1.0, -end.hi / low.hi);
+        return from(low + TwoDoubles{-radius, 0}, curved_column(low.hi / scale_height, c, t));
+    }
+    const double z = path.periapsis.hi / scale_height;
+    return from(path.periapsis + TwoDoubles{-radius, 0},
+                curved_column(z, 0, -path.along.hi / scale_height) +
+                    curved_column(z, 0, end.hi / scale_height));
+}
+
+double spherical_distance(const SphericalPath& path, const SphericalComponent* components,
+                          std::size_t count, double radius, double max_distance, double depth) {
+    return distance_of({components, count, radius}, path, max_distance, depth);
+}
+
+}  // namespace detail
+
 double spherical_depth(const SphericalProfile& profile, const SphericalRay& ray, double distance) {
     if (!is_profile(profile.radius, profile.scale_height) || !is_ray(ray) || !(distance >= 0) ||
         ray.center_distance / profile.scale_height > kLargestZ)
         return kNan;
-    return value(column(start_at_distance(profile.radius, ray.center_distance), profile.radius,
-                        profile.scale_height, ray.cos_zenith, distance));
+    return value(detail::spherical_column(
+        path_at_distance(profile.radius, ray.center_distance, ray.cos_zenith), profile.radius,
+        profile.scale_height, distance));
 }
 
 double spherical_depth_at_altitude(const SphericalProfile& profile, double altitude,
                                    double cos_zenith, double distance) {
-    const Start start = start_at_altitude(profile.radius, altitude);
-    const SphericalRay ray = {start.r.hi, cos_zenith};
-    if (!is_profile(profile.radius, profile.scale_height) || !is_ray(ray) || !(distance >= 0) ||
-        start.r.hi / profile.scale_height > kLargestZ)
+    const TwoDoubles r = detail::two_sum(profile.radius, altitude);
+    if (!is_profile(profile.radius, profile.scale_height) || !is_ray({r.hi, cos_zenith}) ||
+        !(distance >= 0) || r.hi / profile.scale_height > kLargestZ)
         return kNan;
-    return value(column(start, profile.radius, profile.scale_height, cos_zenith, distance));
+    const SphericalPath path = detail::spherical_path(r, {altitude, 0}, r.hi == 0 ? 1 : cos_zenith);
+    return value(detail::spherical_column(path, profile.radius, profile.scale_height, distance));
 }
 
 float spherical_depth(float radius, float scale_height, float center_distance, float cos_zenith,
@@ -276,18 +275,18 @@ double spherical_depth(const SphericalComponent* components, std::size_t count, 
     if (!air.is_valid() || !is_ray(ray) || !(distance >= 0) || !air.takes(ray.center_distance))
         return kNan;
     return value(
-        air.depth(start_at_distance(radius, ray.center_distance), ray.cos_zenith, distance));
+        air.depth(path_at_distance(radius, ray.center_distance, ray.cos_zenith), distance));
 }
 
 double spherical_distance(const SphericalProfile& profile, const SphericalRay& ray,
                           double max_distance, double depth) {
     const SphericalComponent component = {1, profile.scale_height};
-    return distance_of({&component, 1, profile.radius}, ray, max_distance, depth);
+    return checked_distance({&component, 1, profile.radius}, ray, max_distance, depth);
 }
 
 double spherical_distance(const SphericalComponent* components, std::size_t count, double radius,
                           const SphericalRay& ray, double max_distance, double depth) {
-    return distance_of({components, count, radius}, ray, max_distance, depth);
+    return checked_distance({components, count, radius}, ray, max_distance, depth);
 }
 
 float spherical_distance(float radius, float scale_height, float center_distance, float cos_zenith,
