@@ -65,7 +65,7 @@ double spherical_depth(const SphericalComponent* components, std::size_t count, 
 /// rounding alone, 1e-14, gives max_distance, which may be inf.
 ///
 /// By Halley's method within a bracket, until the depth agrees to 2e-15 or neighbouring doubles
-/// enclose it: 1 to 4 evaluations of spherical_depth.
+/// enclose it: 2 to 5 evaluations of spherical_depth; 1.2 us.
 ///
 /// Deviates: [Golubev], SampleSpherExpMedium, stops when the absolute or the relative difference is
 /// below 1e-4, which leaves depths under 1e-4 at the first guess.
