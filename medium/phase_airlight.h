@@ -21,7 +21,7 @@ namespace airlight {
 /// a ray that ends short of the light has the closed form p(0) e^{-t_sv} t_vp / (t_sv (t_sv -
 /// t_vp)), one that reaches it +inf. `scaled` leaves out the e^{-t_sv}.
 ///
-/// Accuracy: relative 2e-15 in double for every g in (-1, 1) and 7e-15 for Rayleigh (measured
+/// Accuracy: relative 2e-15 in double for every g in (-1, 1) and 1e-14 for Rayleigh (measured
 /// against 40 digits over the whole domain); 1e-12 for a table over its own interpolation;
 /// isotropic as airlight(); float is double rounded once.
 ///
