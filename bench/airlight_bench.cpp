@@ -45,7 +45,7 @@ void add(const std::string& name, const Method& method) {
 }
 
 void add_airlight() {
-    for (const AirlightMethodInfo& info : kAirlightMethods) {
+    for (const NamedMethod<AirlightMethod>& info : kAirlightMethods) {
         AirlightOptions options;
         options.method = info.method;
         add(std::string(info.name), AirlightEvaluator(options));

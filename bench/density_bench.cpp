@@ -101,7 +101,7 @@ void add_per_ray(const std::string& name, const Function& function) {
 }
 
 void add_chapman() {
-    for (const ChapmanMethodInfo& info : kChapmanMethods) {
+    for (const NamedMethod<ChapmanMethod>& info : kChapmanMethods) {
         benchmark::RegisterBenchmark(
             ("chapman/" + std::string(info.name)).c_str(),
             [method = info.method](benchmark::State& state) {

@@ -100,8 +100,9 @@ void add_mean_depth(const std::string& name, const Function& function) {
 }
 
 void add_airlight(GaussianAirlightMethod method, const std::string& set, int blobs) {
-    const std::string name = "airlight/" + std::string(gaussian_airlight_method_name(method)) +
-                             "/" + set + std::to_string(blobs);
+    const std::string name = "airlight/" +
+                             std::string(method_name(kGaussianAirlightMethods, method)) + "/" +
+                             set + std::to_string(blobs);
     benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
         const std::vector<GaussianScene> scenes = gaussian_scenes(set, blobs, 200);
         const ErrorQuantiles errors = gaussian_scene_errors(
@@ -165,7 +166,7 @@ void add_tree(int count) {
 }
 
 void add_all() {
-    for (const GaussianLineMethodInfo& info : kGaussianLineMethods) {
+    for (const NamedMethod<GaussianLineMethod>& info : kGaussianLineMethods) {
         add_line<double>("line/" + std::string(info.name), info.method);
         add_line<float>("line/" + std::string(info.name) + "-float", info.method);
     }
@@ -173,7 +174,7 @@ void add_all() {
     add_mean_depth("mean_depth/exact", [](double u) { return mean_gaussian_depth(u); });
     add_mean_depth("mean_depth/table64", MeanDepthTable(64));
     add_mean_depth("mean_depth/table256", MeanDepthTable(256));
-    for (const GaussianAirlightMethodInfo& info : kGaussianAirlightMethods) {
+    for (const NamedMethod<GaussianAirlightMethod>& info : kGaussianAirlightMethods) {
         for (const char* set : {"thin", "medium", "dense"}) {
             for (const int blobs : {1, 2, 5}) add_airlight(info.method, set, blobs);
         }

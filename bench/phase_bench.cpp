@@ -24,7 +24,7 @@ double asymmetry(std::size_t i) {
 }
 
 void add_rungs() {
-    for (const PhaseAirlightMethodInfo& info : kPhaseAirlightMethods) {
+    for (const NamedMethod<PhaseAirlightMethod>& info : kPhaseAirlightMethods) {
         for (const char set : {'A', 'B'}) {
             const std::string name = "airlight_hg/" + std::string(info.name) + "/" + set;
             benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {

@@ -70,7 +70,7 @@ void run(benchmark::State& state, char set, const Method& method) {
 }
 
 void add_rungs() {
-    for (const SlabMethodInfo& info : kSlabMethods) {
+    for (const NamedMethod<SlabMethod>& info : kSlabMethods) {
         for (const char set : {'A', 'B'}) {
             const auto method = [info](const Ray& r) {
                 return slab_near(info.method, r.sigma_t, r.s, r.l, r.w_dot_n, r.wl_dot_n,

@@ -29,7 +29,8 @@ std::string with_exponent(std::string_view name, double exponent) {
 
 void add_rung(SurfaceMethod method, double exponent) {
     benchmark::RegisterBenchmark(
-        with_exponent("surface/" + std::string(surface_method_name(method)), exponent).c_str(),
+        with_exponent("surface/" + std::string(method_name(kSurfaceMethods, method)), exponent)
+            .c_str(),
         [=](benchmark::State& state) {
             SurfaceOptions options;
             options.method = method;
@@ -84,7 +85,7 @@ void add_batch(double exponent) {
 int main(int argc, char** argv) {
     using airlight::SurfaceMethod;
     for (const double exponent : {1.0, 20.0}) {
-        for (const airlight::SurfaceMethodInfo& info : airlight::kSurfaceMethods) {
+        for (const airlight::NamedMethod<SurfaceMethod>& info : airlight::kSurfaceMethods) {
             airlight::add_rung(info.method, exponent);
         }
         airlight::add_batch(exponent);

@@ -17,15 +17,6 @@
 namespace airlight {
 namespace {
 
-std::vector<std::string> airlight_methods() {
-    std::vector<std::string> names = {"exact"};
-    for (const AirlightMethodInfo& info : kAirlightMethods) {
-        if (info.name != names[0]) names.emplace_back(info.name);
-    }
-    names.insert(names.end(), {"batch", "batch-table"});
-    return names;
-}
-
 std::optional<int> sinh_gl_nodes(AirlightMethod method) {
     switch (method) {
         case AirlightMethod::sinh_gl6:
@@ -57,7 +48,7 @@ Evaluator make_airlight(const std::string& name, EvalPrecision precision) {
             table->airlight_batch(count, x[0], x[1], x[2], out);
         });
     }
-    const std::optional<AirlightMethod> method = airlight_method_from_name(name);
+    const std::optional<AirlightMethod> method = method_from_name(kAirlightMethods, name);
     assert(method.has_value());
     if (*method == AirlightMethod::exact) {
         return in_precision<3>(precision, [](auto gamma, auto t_sv, auto t_vp) {
@@ -114,7 +105,7 @@ std::vector<EvalFunction> airlight_functions() {
         {"airlight",
          "L_a / (beta^2 I_0)",
          {angle("gamma"), not_negative("Tsv"), not_negative("Tvp")},
-         airlight_methods(),
+         method_names(kAirlightMethods, AirlightMethod::exact, {"batch", "batch-table"}),
          make_airlight},
         {"npsf",
          "NPSF(gamma), 1/sr",

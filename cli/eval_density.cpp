@@ -13,13 +13,6 @@
 namespace airlight {
 namespace {
 
-template <class Infos>
-std::vector<std::string> names_of(const Infos& infos) {
-    std::vector<std::string> names;
-    for (const auto& info : infos) names.emplace_back(info.name);
-    return names;
-}
-
 Evaluator make_erfcx(const std::string& method, EvalPrecision precision) {
     if (method == "rational9") {
         return pointwise([](const EvalArguments& a) -> double {
@@ -41,7 +34,7 @@ Evaluator make_exponential_height(const std::string& method, EvalPrecision preci
 }
 
 Evaluator make_chapman(const std::string& name, EvalPrecision precision) {
-    const ChapmanMethod method = *chapman_method_from_name(name);
+    const ChapmanMethod method = *method_from_name(kChapmanMethods, name);
     if (method == ChapmanMethod::exact) {
         return in_precision<2>(precision, [](auto z, auto c) { return ln_chapman(z, c); });
     }
@@ -56,12 +49,6 @@ SphericalProfile profile_of(const EvalArguments& a) {
 
 SphericalRay ray_of(const EvalArguments& a) {
     return {a[2], a[3]};
-}
-
-std::vector<std::string> spherical_depth_methods() {
-    std::vector<std::string> names = names_of(kSphericalMethods);
-    names.emplace_back("batch");
-    return names;
 }
 
 Evaluator make_spherical_depth(const std::string& method, EvalPrecision precision) {
@@ -124,14 +111,14 @@ std::vector<EvalFunction> density_functions() {
         {"chapman",
          "ln C(z, cosTheta), Chapman's function",
          {not_negative("z"), cosine("cosTheta")},
-         names_of(kChapmanMethods),
+         method_names(kChapmanMethods, ChapmanMethod::exact),
          make_chapman,
          nullptr,
          true},
         {"optdepth_sphere",
          "column of exp(-(|x| - R) / H) along a ray",
          {length("R"), not_negative("H"), length("r"), cosine("cosTheta"), not_negative("dist")},
-         spherical_depth_methods(),
+         method_names(kSphericalMethods, SphericalMethod::exact, {"batch"}),
          make_spherical_depth},
         {"sample_sphere",
          "distance at which optdepth_sphere is tau",
@@ -145,7 +132,7 @@ std::vector<EvalFunction> density_functions() {
         {"exp2erfc",
          "exp(x^2) erfc(x)",
          {{"x", "[-inf, inf]", -std::numeric_limits<double>::infinity()}},
-         names_of(kErfcxMethods),
+         method_names(kErfcxMethods, ErfcxMethod::exact),
          make_erfcx},
         {"rectexp",
          "column of exp(-n height) along a ray",

@@ -18,22 +18,13 @@ EvalColumn finite_not_negative(const std::string& name) {
     return {name, "[0, inf)", 0, std::numeric_limits<double>::infinity(), true};
 }
 
-std::vector<std::string> line_methods() {
-    std::vector<std::string> names = {"exact"};
-    for (const GaussianLineMethodInfo& info : kGaussianLineMethods) {
-        if (info.name != names[0]) names.emplace_back(info.name);
-    }
-    names.emplace_back("batch");
-    return names;
-}
-
 Evaluator make_line(const std::string& name, EvalPrecision precision) {
     if (name == "batch") {
         return in_batches<5>([](std::size_t count, const auto& x, float* out) {
             gaussian_line_batch(count, x[0], x[1], x[2], x[3], x[4], out);
         });
     }
-    const std::optional<GaussianLineMethod> method = gaussian_line_method_from_name(name);
+    const std::optional<GaussianLineMethod> method = method_from_name(kGaussianLineMethods, name);
     assert(method.has_value());
     return in_precision<5>(
         precision, [method = *method](auto a, auto c, auto rho_perp, auto m_proj, auto dist) {
@@ -59,7 +50,7 @@ std::vector<EvalFunction> gaussian_functions() {
          "c exp(-a^2 rho_perp^2) int_0^dist exp(-a^2 (t - m_proj)^2) dt",
          {finite_not_negative("a"), finite_not_negative("c"), finite_not_negative("rho_perp"),
           any_number("m_proj"), not_negative("dist")},
-         line_methods(),
+         method_names(kGaussianLineMethods, GaussianLineMethod::exact, {"batch"}),
          make_line},
         {"avg_depth_gauss",
          "T(u) = sqrt(pi) / (2 u) Dawson(u)",

@@ -16,16 +16,8 @@ EvalColumn asymmetry() {
     return {"g", "(-1, 1)", std::nextafter(-1.0, 0.0), std::nextafter(1.0, 0.0)};
 }
 
-std::vector<std::string> airlight_hg_methods() {
-    std::vector<std::string> names = {"exact"};
-    for (const PhaseAirlightMethodInfo& info : kPhaseAirlightMethods) {
-        if (info.name != names[0]) names.emplace_back(info.name);
-    }
-    return names;
-}
-
 Evaluator make_airlight_hg(const std::string& name, EvalPrecision precision) {
-    const std::optional<PhaseAirlightMethod> method = phase_airlight_method_from_name(name);
+    const std::optional<PhaseAirlightMethod> method = method_from_name(kPhaseAirlightMethods, name);
     assert(method.has_value());
     // The rungs exist in double only: a float result is theirs, rounded.
     return in_precision<4>(precision, [=](auto gamma, auto t_sv, auto t_vp, auto g) {
@@ -54,7 +46,7 @@ std::vector<EvalFunction> phase_functions() {
         {"airlight_hg",
          "L_a / (beta^2 I_0), Henyey-Greenstein",
          {angle("gamma"), not_negative("Tsv"), not_negative("Tvp"), asymmetry()},
-         airlight_hg_methods(),
+         method_names(kPhaseAirlightMethods, PhaseAirlightMethod::exact),
          make_airlight_hg},
         {"airlight_rayleigh",
          "L_a / (beta^2 I_0), Rayleigh",

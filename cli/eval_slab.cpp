@@ -22,16 +22,8 @@ std::vector<EvalColumn> slab_columns() {
         not_negative("sigma_t"), not_negative("s"), not_negative("l"), w_dot_n, wl_dot_n, w_dot_wl};
 }
 
-std::vector<std::string> slab_methods() {
-    std::vector<std::string> names = {"exact"};
-    for (const SlabMethodInfo& info : kSlabMethods) {
-        if (info.name != names[0]) names.emplace_back(info.name);
-    }
-    return names;
-}
-
 Evaluator make_slab(const std::string& name, EvalPrecision precision) {
-    const std::optional<SlabMethod> method = slab_method_from_name(name);
+    const std::optional<SlabMethod> method = method_from_name(kSlabMethods, name);
     assert(method.has_value());
     return in_precision<6>(
         precision, [method = *method](auto sigma_t, auto s, auto l, auto a, auto b, auto g) {
@@ -51,7 +43,7 @@ std::vector<EvalFunction> slab_functions() {
     return {
         {"slab",
          "int_0^s e^{-sigma_t (x + k)} / h^2 dx, a point light over a slab, sigma_s p I_0 = 1",
-         slab_columns(), slab_methods(), make_slab},
+         slab_columns(), method_names(kSlabMethods, SlabMethod::exact), make_slab},
         {"slab_approx",
          "the same for thin media by [Slab] section 4.2",
          slab_columns(),

@@ -21,15 +21,6 @@ namespace {
 // A table of 128 x 129 points takes half a second to build and 130 KB to keep.
 constexpr std::size_t kKeptTables = 64;
 
-std::vector<std::string> surface_methods() {
-    std::vector<std::string> names = {"exact"};
-    for (const SurfaceMethodInfo& info : kSurfaceMethods) {
-        if (info.name != names[0]) names.emplace_back(info.name);
-    }
-    names.emplace_back("batch");
-    return names;
-}
-
 /// One exponent, ready to evaluate: values of count pairs (T, theta).
 using SurfaceRows = std::function<void(
     const std::vector<double>& t, const std::vector<double>& theta, std::vector<double>& values)>;
@@ -91,7 +82,7 @@ SurfaceRows table_rows(SurfaceMethod method, double exponent) {
 
 Evaluator make_surface(const std::string& name, EvalPrecision precision) {
     if (name == "batch") return by_exponent(batch_rows, EvalPrecision::float_precision);
-    const std::optional<SurfaceMethod> method = surface_method_from_name(name);
+    const std::optional<SurfaceMethod> method = method_from_name(kSurfaceMethods, name);
     assert(method.has_value());
     if (*method == SurfaceMethod::exact) {
         return in_precision<3>(precision, [](auto t_sp, auto theta_s, auto exponent) {
@@ -109,7 +100,7 @@ std::vector<EvalFunction> surface_functions() {
         {"surface_Gn",
          "G_n(T_sp, theta_s)",
          {not_negative("Tsp"), angle("theta_s"), {"n", "[1, 1000]", 1, 1000}},
-         surface_methods(),
+         method_names(kSurfaceMethods, SurfaceMethod::exact, {"batch"}),
          make_surface},
     };
 }

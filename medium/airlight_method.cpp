@@ -6,20 +6,6 @@
 
 namespace airlight {
 
-std::string_view airlight_method_name(AirlightMethod method) {
-    for (const AirlightMethodInfo& info : kAirlightMethods) {
-        if (info.method == method) return info.name;
-    }
-    return {};
-}
-
-std::optional<AirlightMethod> airlight_method_from_name(std::string_view name) {
-    for (const AirlightMethodInfo& info : kAirlightMethods) {
-        if (info.name == name) return info.method;
-    }
-    return std::nullopt;
-}
-
 AirlightEvaluator::AirlightEvaluator(const AirlightOptions& options) : options_(options) {
     switch (options.method) {
         case AirlightMethod::f_table_nearest:

@@ -2,10 +2,9 @@
 // The ladder of airlight methods, by name.
 #pragma once
 
-#include <optional>
-#include <string_view>
 #include <variant>
 
+#include "core/method_names.h"
 #include "medium/airlight_tables.h"
 
 namespace airlight {
@@ -39,13 +38,8 @@ enum class AirlightMethod {
     exact,
 };
 
-struct AirlightMethodInfo {
-    AirlightMethod method;
-    std::string_view name;  ///< as on the command line
-};
-
 /// Every method with its name, in the order of the enum.
-inline constexpr AirlightMethodInfo kAirlightMethods[] = {
+inline constexpr NamedMethod<AirlightMethod> kAirlightMethods[] = {
     {AirlightMethod::f_table_nearest, "f-table-nearest"},
     {AirlightMethod::f_table_bilinear, "f-table-bilinear"},
     {AirlightMethod::warped_table, "warped-table"},
@@ -59,11 +53,6 @@ inline constexpr AirlightMethodInfo kAirlightMethods[] = {
     {AirlightMethod::e1, "e1"},
     {AirlightMethod::exact, "exact"},
 };
-
-std::string_view airlight_method_name(AirlightMethod method);
-
-/// Nothing when no method has that name.
-std::optional<AirlightMethod> airlight_method_from_name(std::string_view name);
 
 struct AirlightOptions {
     AirlightMethod method = AirlightMethod::exact;

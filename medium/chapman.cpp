@@ -101,13 +101,6 @@ double chapman_distance(double z, double cos_theta, double depth) {
     return spherical_distance({z, 1}, {z, cos_theta}, kInfinity, depth);
 }
 
-std::optional<ChapmanMethod> chapman_method_from_name(std::string_view name) {
-    for (const ChapmanMethodInfo& info : kChapmanMethods) {
-        if (info.name == name) return info.method;
-    }
-    return std::nullopt;
-}
-
 double ln_chapman(double z, double cos_theta, ChapmanMethod method) {
     if (!is_in_domain(z, cos_theta)) return kNan;
     switch (method) {

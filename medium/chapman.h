@@ -2,8 +2,7 @@
 // The Chapman function: the column of an infinite ray through an exponential atmosphere.
 #pragma once
 
-#include <optional>
-#include <string_view>
+#include "core/method_names.h"
 
 namespace airlight {
 
@@ -51,20 +50,13 @@ double chapman_distance(double z, double cos_theta, double depth);
 /// its C_u at the horizon, so that C jumps there by sqrt(pi z / 2) 15 / (128 z^2).
 enum class ChapmanMethod { secant, schueler, huestis_fp32, huestis, exact };
 
-struct ChapmanMethodInfo {
-    ChapmanMethod method;
-    std::string_view name;  ///< as on the command line
-};
-
-inline constexpr ChapmanMethodInfo kChapmanMethods[] = {
+inline constexpr NamedMethod<ChapmanMethod> kChapmanMethods[] = {
     {ChapmanMethod::exact, "exact"},
     {ChapmanMethod::huestis, "huestis"},
     {ChapmanMethod::huestis_fp32, "huestis-fp32"},
     {ChapmanMethod::schueler, "schueler"},
     {ChapmanMethod::secant, "secant"},
 };
-
-std::optional<ChapmanMethod> chapman_method_from_name(std::string_view name);
 
 /// ln C by one of the methods. Domain as ln_chapman. Where a method has no positive value (their
 /// series at z near 0) it gives NaN.

@@ -136,20 +136,6 @@ double gaussian_centroid(double a, double m, double dist) {
     return std::clamp(std::isnan(t) ? m : t, 0.0, dist);
 }
 
-std::string_view gaussian_airlight_method_name(GaussianAirlightMethod method) {
-    for (const GaussianAirlightMethodInfo& info : kGaussianAirlightMethods) {
-        if (info.method == method) return info.name;
-    }
-    return {};
-}
-
-std::optional<GaussianAirlightMethod> gaussian_airlight_method_from_name(std::string_view name) {
-    for (const GaussianAirlightMethodInfo& info : kGaussianAirlightMethods) {
-        if (info.name == name) return info.method;
-    }
-    return std::nullopt;
-}
-
 GaussianAirlightEvaluator::GaussianAirlightEvaluator(GaussianAirlightMethod method,
                                                      GaussianMedium medium,
                                                      const glm::dvec3& viewer,

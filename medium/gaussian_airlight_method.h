@@ -2,10 +2,9 @@
 // The ladder of methods for the airlight of Gaussian media, by name.
 #pragma once
 
-#include <optional>
-#include <string_view>
 #include <vector>
 
+#include "core/method_names.h"
 #include "medium/gaussian_airlight.h"
 
 namespace airlight {
@@ -50,13 +49,8 @@ enum class GaussianAirlightMethod {
     exact,
 };
 
-struct GaussianAirlightMethodInfo {
-    GaussianAirlightMethod method;
-    std::string_view name;  ///< as on the command line
-};
-
 /// Every method with its name, in the order of the enum.
-inline constexpr GaussianAirlightMethodInfo kGaussianAirlightMethods[] = {
+inline constexpr NamedMethod<GaussianAirlightMethod> kGaussianAirlightMethods[] = {
     {GaussianAirlightMethod::fogshop, "fogshop"},
     {GaussianAirlightMethod::centroid, "centroid"},
     {GaussianAirlightMethod::march8, "march8"},
@@ -69,11 +63,6 @@ inline constexpr GaussianAirlightMethodInfo kGaussianAirlightMethods[] = {
     {GaussianAirlightMethod::mixed_gl64, "mixed-gl64"},
     {GaussianAirlightMethod::exact, "exact"},
 };
-
-std::string_view gaussian_airlight_method_name(GaussianAirlightMethod method);
-
-/// Nothing when no method has that name.
-std::optional<GaussianAirlightMethod> gaussian_airlight_method_from_name(std::string_view name);
 
 /// The two parts of [Zhou07] eq. 8: the sum of the Gaussian terms and the uniform one, L_0.
 struct FogshopAirlight {

@@ -53,20 +53,6 @@ Real line_by(GaussianLineMethod method, Real a, Real c, Real rho_perp, Real m_pr
 
 }  // namespace
 
-std::string_view gaussian_line_method_name(GaussianLineMethod method) {
-    for (const GaussianLineMethodInfo& info : kGaussianLineMethods) {
-        if (info.method == method) return info.name;
-    }
-    return {};
-}
-
-std::optional<GaussianLineMethod> gaussian_line_method_from_name(std::string_view name) {
-    for (const GaussianLineMethodInfo& info : kGaussianLineMethods) {
-        if (info.name == name) return info.method;
-    }
-    return std::nullopt;
-}
-
 double gaussian_line(GaussianLineMethod method, double a, double c, double rho_perp, double m_proj,
                      double dist) {
     return line_by(method, a, c, rho_perp, m_proj, dist);

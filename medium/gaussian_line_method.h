@@ -2,8 +2,7 @@
 // The ladder of methods for the line integral of a Gaussian, by name.
 #pragma once
 
-#include <optional>
-#include <string_view>
+#include "core/method_names.h"
 
 namespace airlight {
 
@@ -19,22 +18,12 @@ namespace airlight {
 ///     exact       48   0             53   5e-8         0
 enum class GaussianLineMethod { fast_erf, erf, exact };
 
-struct GaussianLineMethodInfo {
-    GaussianLineMethod method;
-    std::string_view name;  ///< as on the command line
-};
-
 /// Every method with its name, in the order of the enum.
-inline constexpr GaussianLineMethodInfo kGaussianLineMethods[] = {
+inline constexpr NamedMethod<GaussianLineMethod> kGaussianLineMethods[] = {
     {GaussianLineMethod::fast_erf, "fast-erf"},
     {GaussianLineMethod::erf, "erf"},
     {GaussianLineMethod::exact, "exact"},
 };
-
-std::string_view gaussian_line_method_name(GaussianLineMethod method);
-
-/// Nothing when no method has that name.
-std::optional<GaussianLineMethod> gaussian_line_method_from_name(std::string_view name);
 
 /// One rung. Domain and corners as gaussian_line(); a difference that rounding or the fit made
 /// negative gives 0. float works in float throughout.

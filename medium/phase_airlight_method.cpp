@@ -51,13 +51,6 @@ double by_panel(double gamma, double t_sv, double t_vp, double g, int nodes) {
 
 }  // namespace
 
-std::optional<PhaseAirlightMethod> phase_airlight_method_from_name(std::string_view name) {
-    for (const PhaseAirlightMethodInfo& info : kPhaseAirlightMethods) {
-        if (info.name == name) return info.method;
-    }
-    return std::nullopt;
-}
-
 double airlight_hg(double gamma, double t_sv, double t_vp, double g, PhaseAirlightMethod method) {
     if (!(g > -1 && g < 1)) return std::numeric_limits<double>::quiet_NaN();
     switch (method) {

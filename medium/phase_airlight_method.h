@@ -2,8 +2,7 @@
 // The ladder of methods for airlight with Henyey-Greenstein scattering, by name.
 #pragma once
 
-#include <optional>
-#include <string_view>
+#include "core/method_names.h"
 
 namespace airlight {
 
@@ -24,20 +23,12 @@ namespace airlight {
 /// exact method takes as many panels of 16 nodes as the ray needs, mostly one: only gl8 is cheaper.
 enum class PhaseAirlightMethod { march64, gl8, gl16, gl32, exact };
 
-struct PhaseAirlightMethodInfo {
-    PhaseAirlightMethod method;
-    std::string_view name;  ///< as on the command line
-};
-
 /// Every method with its name, in the order of the enum.
-inline constexpr PhaseAirlightMethodInfo kPhaseAirlightMethods[] = {
+inline constexpr NamedMethod<PhaseAirlightMethod> kPhaseAirlightMethods[] = {
     {PhaseAirlightMethod::march64, "march64"}, {PhaseAirlightMethod::gl8, "gl8"},
     {PhaseAirlightMethod::gl16, "gl16"},       {PhaseAirlightMethod::gl32, "gl32"},
     {PhaseAirlightMethod::exact, "exact"},
 };
-
-/// Nothing when no method has that name.
-std::optional<PhaseAirlightMethod> phase_airlight_method_from_name(std::string_view name);
 
 /// L_a / (beta^2 I_0) for g in (-1, 1) by that method.
 double airlight_hg(double gamma, double t_sv, double t_vp, double g, PhaseAirlightMethod method);

@@ -2,7 +2,7 @@
 // The scaled complementary error function.
 #pragma once
 
-#include <string_view>
+#include "core/method_names.h"
 
 namespace airlight {
 
@@ -26,12 +26,7 @@ float erfcx_rational9(float x);
 /// The rungs, by name: `exact` and `rational9`, the two above.
 enum class ErfcxMethod { exact, rational9 };
 
-struct ErfcxMethodInfo {
-    ErfcxMethod method;
-    std::string_view name;  ///< as on the command line
-};
-
-inline constexpr ErfcxMethodInfo kErfcxMethods[] = {
+inline constexpr NamedMethod<ErfcxMethod> kErfcxMethods[] = {
     {ErfcxMethod::exact, "exact"},
     {ErfcxMethod::rational9, "rational9"},
 };

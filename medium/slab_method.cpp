@@ -60,20 +60,6 @@ double equiangular(const Case& c, double end, int nodes) {
 
 }  // namespace
 
-std::string_view slab_method_name(SlabMethod method) {
-    for (const SlabMethodInfo& info : kSlabMethods) {
-        if (info.method == method) return info.name;
-    }
-    return {};
-}
-
-std::optional<SlabMethod> slab_method_from_name(std::string_view name) {
-    for (const SlabMethodInfo& info : kSlabMethods) {
-        if (info.name == name) return info.method;
-    }
-    return std::nullopt;
-}
-
 double slab_near(SlabMethod method, double sigma_t, double s, double l, double w_dot_n,
                  double wl_dot_n, double w_dot_wl) {
     const auto by_panels = [&](int nodes) {

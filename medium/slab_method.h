@@ -2,8 +2,7 @@
 // The ladder of methods for the point light over a slab, by name.
 #pragma once
 
-#include <optional>
-#include <string_view>
+#include "core/method_names.h"
 
 namespace airlight {
 
@@ -34,13 +33,8 @@ enum class SlabMethod {
     exact,
 };
 
-struct SlabMethodInfo {
-    SlabMethod method;
-    std::string_view name;  ///< as on the command line
-};
-
 /// Every method with its name, in the order of the enum.
-inline constexpr SlabMethodInfo kSlabMethods[] = {
+inline constexpr NamedMethod<SlabMethod> kSlabMethods[] = {
     {SlabMethod::thin, "thin"},
     {SlabMethod::equiangular_gl8, "equiangular-gl8"},
     {SlabMethod::equiangular_gl16, "equiangular-gl16"},
@@ -50,11 +44,6 @@ inline constexpr SlabMethodInfo kSlabMethods[] = {
     {SlabMethod::panels_gl12, "panels-gl12"},
     {SlabMethod::exact, "exact"},
 };
-
-std::string_view slab_method_name(SlabMethod method);
-
-/// Nothing when no method has that name.
-std::optional<SlabMethod> slab_method_from_name(std::string_view name);
 
 /// slab_near() by one of the rungs, with its domain and corners; never negative.
 double slab_near(SlabMethod method, double sigma_t, double s, double l, double w_dot_n,

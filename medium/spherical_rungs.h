@@ -2,8 +2,7 @@
 // Cheaper ways to the optical depth of an exponential atmosphere, and what they cost in accuracy.
 #pragma once
 
-#include <string_view>
-
+#include "core/method_names.h"
 #include "medium/spherical_density.h"
 
 namespace airlight {
@@ -38,12 +37,7 @@ double spherical_depth_flat(const SphericalProfile& profile, const SphericalRay&
 ///     flat           60          4e-14 2e-11  4e-10 2e-7   5e-4 3e7     .5   9e6
 enum class SphericalMethod { exact, article, flat };
 
-struct SphericalMethodInfo {
-    SphericalMethod method;
-    std::string_view name;  ///< as on the command line
-};
-
-inline constexpr SphericalMethodInfo kSphericalMethods[] = {
+inline constexpr NamedMethod<SphericalMethod> kSphericalMethods[] = {
     {SphericalMethod::exact, "exact"},
     {SphericalMethod::article, "article"},
     {SphericalMethod::flat, "flat"},

@@ -6,20 +6,6 @@
 
 namespace airlight {
 
-std::string_view surface_method_name(SurfaceMethod method) {
-    for (const SurfaceMethodInfo& info : kSurfaceMethods) {
-        if (info.method == method) return info.name;
-    }
-    return {};
-}
-
-std::optional<SurfaceMethod> surface_method_from_name(std::string_view name) {
-    for (const SurfaceMethodInfo& info : kSurfaceMethods) {
-        if (info.name == name) return info.method;
-    }
-    return std::nullopt;
-}
-
 SurfaceEvaluator::SurfaceEvaluator(const SurfaceOptions& options) : options_(options) {
     if (options_.table_size == 0) {
         options_.table_size = options_.method == SurfaceMethod::cubic_table ? 128 : 64;

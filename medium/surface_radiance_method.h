@@ -2,10 +2,9 @@
 // The ladder of surface radiance methods, by name.
 #pragma once
 
-#include <optional>
-#include <string_view>
 #include <variant>
 
+#include "core/method_names.h"
 #include "medium/surface_radiance_tables.h"
 
 namespace airlight {
@@ -30,24 +29,14 @@ enum class SurfaceMethod {
     exact,
 };
 
-struct SurfaceMethodInfo {
-    SurfaceMethod method;
-    std::string_view name;  ///< as on the command line
-};
-
 /// Every method with its name, in the order of the enum.
-inline constexpr SurfaceMethodInfo kSurfaceMethods[] = {
+inline constexpr NamedMethod<SurfaceMethod> kSurfaceMethods[] = {
     {SurfaceMethod::raw_table_nearest, "raw-table-nearest"},
     {SurfaceMethod::raw_table_bilinear, "raw-table-bilinear"},
     {SurfaceMethod::warped_table, "warped-table"},
     {SurfaceMethod::cubic_table, "cubic-table"},
     {SurfaceMethod::exact, "exact"},
 };
-
-std::string_view surface_method_name(SurfaceMethod method);
-
-/// Nothing when no method has that name.
-std::optional<SurfaceMethod> surface_method_from_name(std::string_view name);
 
 struct SurfaceOptions {
     SurfaceMethod method = SurfaceMethod::exact;

@@ -131,7 +131,7 @@ TEST(Ladder, AirlightReportHasEveryMethodOnBothSets) {
         }
     }
     const std::string plot = read_bytes(scratch / "airlight.svg");
-    for (const AirlightMethodInfo& info : kAirlightMethods) {
+    for (const NamedMethod<AirlightMethod>& info : kAirlightMethods) {
         EXPECT_EQ(sets[std::string(info.name)], (std::set<std::string>{"A", "B"})) << info.name;
         EXPECT_NE(plot.find(">" + std::string(info.name) + "</text>"), std::string::npos);
     }

@@ -28,15 +28,15 @@ AirlightEvaluator evaluator(AirlightMethod method) {
 
 TEST(AirlightMethod, NamesAndMethodsAnswerEachOther) {
     std::set<std::string_view> names;
-    for (const AirlightMethodInfo& info : kAirlightMethods) {
-        EXPECT_EQ(airlight_method_name(info.method), info.name);
-        EXPECT_EQ(airlight_method_from_name(info.name), info.method);
+    for (const NamedMethod<AirlightMethod>& info : kAirlightMethods) {
+        EXPECT_EQ(method_name(kAirlightMethods, info.method), info.name);
+        EXPECT_EQ(method_from_name(kAirlightMethods, info.name), info.method);
         names.insert(info.name);
     }
     EXPECT_EQ(names.size(), std::size(kAirlightMethods));
     EXPECT_EQ(names.size(), static_cast<std::size_t>(AirlightMethod::exact) + 1);
-    EXPECT_FALSE(airlight_method_from_name("sinh-gl7"));
-    EXPECT_FALSE(airlight_method_from_name(""));
+    EXPECT_FALSE(method_from_name(kAirlightMethods, "sinh-gl7"));
+    EXPECT_FALSE(method_from_name(kAirlightMethods, ""));
     EXPECT_EQ(AirlightOptions{}.method, AirlightMethod::exact);
 }
 
@@ -59,7 +59,7 @@ TEST(AirlightMethod, EveryRungKeepsItsErrorBound) {
         {"exact", {0, 0}},
     };
     const auto a = airlight_set('A', 20000), b = airlight_set('B', 20000);
-    for (const AirlightMethodInfo& info : kAirlightMethods) {
+    for (const NamedMethod<AirlightMethod>& info : kAirlightMethods) {
         const AirlightEvaluator rung = evaluator(info.method);
         const auto& [bound_a, bound_b] = bounds.at(info.name);
         EXPECT_LE(airlight_errors(a, rung).max, bound_a) << info.name;
@@ -80,7 +80,7 @@ TEST(AirlightMethod, MoreNodesAreMoreAccurate) {
 }
 
 TEST(AirlightMethod, NoRungGivesNanOrANegativeRadiance) {
-    for (const AirlightMethodInfo& info : kAirlightMethods) {
+    for (const NamedMethod<AirlightMethod>& info : kAirlightMethods) {
         const AirlightEvaluator rung = evaluator(info.method);
         std::mt19937_64 random(19);
         std::uniform_real_distribution<double> unit(0, 1);

@@ -68,11 +68,11 @@ TEST(Chapman, RefusesWhatIsOutsideItsDomainWithNan) {
         EXPECT_TRUE(std::isnan(f(1.0, 1.0000001)));
         EXPECT_TRUE(std::isnan(f(1.0, -1.0000001)));
     }
-    for (const ChapmanMethodInfo& info : kChapmanMethods) {
+    for (const NamedMethod<ChapmanMethod>& info : kChapmanMethods) {
         EXPECT_TRUE(std::isnan(ln_chapman(1.0, 1.5, info.method))) << info.name;
-        EXPECT_TRUE(chapman_method_from_name(info.name) == info.method);
+        EXPECT_TRUE(method_from_name(kChapmanMethods, info.name) == info.method);
     }
-    EXPECT_FALSE(chapman_method_from_name("cosine").has_value());
+    EXPECT_FALSE(method_from_name(kChapmanMethods, "cosine").has_value());
 }
 
 double largest_error(ChapmanMethod method, double z) {

@@ -114,7 +114,7 @@ TEST(GaussianAirlight, DoesNotDependOnTheOrderOfTheBlobsNorOnEmptyOnes) {
         std::reverse(other.blobs.begin(), other.blobs.end());
         other.blobs.push_back({{1, 1, 1}, 2, 0});
         EXPECT_LT(relative_error(gaussian_airlight(other, scene.ray), scene.exact), 1e-12);
-        for (const GaussianAirlightMethodInfo& info : kGaussianAirlightMethods) {
+        for (const NamedMethod<GaussianAirlightMethod>& info : kGaussianAirlightMethods) {
             EXPECT_LT(relative_error(by(info.method, other, scene.ray),
                                      by(info.method, scene.medium, scene.ray)),
                       1e-11)
@@ -127,7 +127,7 @@ TEST(GaussianAirlight, CornersAreTheirLimits) {
     const GaussianMedium medium{0.1, {{{0, 0, 4}, 1, 1}}};
     const GaussianMedium empty{0, {}};
     const GaussianMedium blob{0, medium.blobs};
-    for (const GaussianAirlightMethodInfo& info : kGaussianAirlightMethods) {
+    for (const NamedMethod<GaussianAirlightMethod>& info : kGaussianAirlightMethods) {
         const auto value = [&](const GaussianMedium& m, const AirlightRay& ray) {
             return by(info.method, m, ray);
         };
@@ -158,7 +158,7 @@ TEST(GaussianAirlight, CornersAreTheirLimits) {
 TEST(GaussianAirlight, RefusesWhatIsOutsideItsDomainWithNan) {
     const GaussianMedium good{0.1, {{{0, 0, 4}, 1, 1}}};
     const AirlightRay ray{{0, 0, 0}, {1, 0, 3}, {0, 0, 1}, 5};
-    for (const GaussianAirlightMethodInfo& info : kGaussianAirlightMethods) {
+    for (const NamedMethod<GaussianAirlightMethod>& info : kGaussianAirlightMethods) {
         for (const double bad : {kNan, -1.0, kInfinity, 1e101}) {
             GaussianMedium medium = good;
             medium.beta0 = bad;
@@ -239,7 +239,7 @@ TEST(GaussianAirlight, SweepOfEveryMethodGivesNeitherNanNorNegative) {
     sweep(
         [](SweepDraw& draw) -> std::string {
             const GaussianScene scene = hard_scene(draw);
-            for (const GaussianAirlightMethodInfo& info : kGaussianAirlightMethods) {
+            for (const NamedMethod<GaussianAirlightMethod>& info : kGaussianAirlightMethods) {
                 if (info.method == Method::exact && !draw.chance(0.02)) continue;
                 if (info.method > Method::mixed_gl16 && info.method < Method::exact) continue;
                 const double value = by(info.method, scene.medium, scene.ray);
@@ -296,7 +296,7 @@ TEST(GaussianAirlightMethod, ErrsAsItsHeaderSays) {
         const ErrorQuantiles errors = gaussian_scene_errors(
             gaussian_scenes(c.set, c.blobs, 150),
             [&](const auto& scene) { return gaussian_scene_airlight(c.method, scene); });
-        const std::string_view name = gaussian_airlight_method_name(c.method);
+        const std::string_view name = method_name(kGaussianAirlightMethods, c.method);
         EXPECT_LT(errors.median, c.median) << name << ' ' << c.set << c.blobs;
         EXPECT_LT(errors.p90, c.p90) << name << ' ' << c.set << c.blobs;
         // And not by much less, or the header is out of date.
@@ -305,11 +305,11 @@ TEST(GaussianAirlightMethod, ErrsAsItsHeaderSays) {
 }
 
 TEST(GaussianAirlightMethod, NamesComeBack) {
-    for (const GaussianAirlightMethodInfo& info : kGaussianAirlightMethods) {
-        EXPECT_EQ(gaussian_airlight_method_from_name(info.name), info.method);
-        EXPECT_EQ(gaussian_airlight_method_name(info.method), info.name);
+    for (const NamedMethod<GaussianAirlightMethod>& info : kGaussianAirlightMethods) {
+        EXPECT_EQ(method_from_name(kGaussianAirlightMethods, info.name), info.method);
+        EXPECT_EQ(method_name(kGaussianAirlightMethods, info.method), info.name);
     }
-    EXPECT_FALSE(gaussian_airlight_method_from_name("none").has_value());
+    EXPECT_FALSE(method_from_name(kGaussianAirlightMethods, "none").has_value());
 }
 
 // [Zhou07] eq. 12 and 13 as printed: f^0 has exp(+T_i(s, b_i) + T_i(v, b_i)), f^1 the inverse.

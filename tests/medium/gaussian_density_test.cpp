@@ -176,7 +176,7 @@ TEST(GaussianLine, RefusesWhatIsOutsideItsDomainWithNan) {
             x[i] = bad;
             EXPECT_TRUE(std::isnan(gaussian_line(x[0], x[1], x[2], x[3], x[4]))) << i << ' ' << bad;
             EXPECT_TRUE(std::isnan(gaussian_line_inverse(x[0], x[1], x[2], x[3], x[4])));
-            for (const GaussianLineMethodInfo& info : kGaussianLineMethods) {
+            for (const NamedMethod<GaussianLineMethod>& info : kGaussianLineMethods) {
                 EXPECT_TRUE(std::isnan(gaussian_line(info.method, x[0], x[1], x[2], x[3], x[4])));
             }
         }
@@ -208,11 +208,11 @@ TEST(GaussianLine, ThePrintedDifferenceLosesTheSegmentsBesideTheBlob) {
 }
 
 TEST(GaussianLineMethod, NamesComeBack) {
-    for (const GaussianLineMethodInfo& info : kGaussianLineMethods) {
-        EXPECT_EQ(gaussian_line_method_from_name(info.name), info.method);
-        EXPECT_EQ(gaussian_line_method_name(info.method), info.name);
+    for (const NamedMethod<GaussianLineMethod>& info : kGaussianLineMethods) {
+        EXPECT_EQ(method_from_name(kGaussianLineMethods, info.name), info.method);
+        EXPECT_EQ(method_name(kGaussianLineMethods, info.method), info.name);
     }
-    EXPECT_FALSE(gaussian_line_method_from_name("none").has_value());
+    EXPECT_FALSE(method_from_name(kGaussianLineMethods, "none").has_value());
 }
 
 TEST(GaussianLineMethod, FastErfErrsByItsSwitchAndNotByMore) {
@@ -234,7 +234,7 @@ TEST(GaussianLineMethod, SweepRungsStayWithinTheirAbsoluteErrorAndAreNeverNegati
     sweep([](SweepDraw& draw) -> std::string {
         const Line line = random_line(draw);
         const double exact = line.depth();
-        for (const GaussianLineMethodInfo& info : kGaussianLineMethods) {
+        for (const NamedMethod<GaussianLineMethod>& info : kGaussianLineMethods) {
             const double value =
                 gaussian_line(info.method, line.a, line.c, line.rho, line.m, line.dist);
             const double bound = info.method == GaussianLineMethod::fast_erf ? 3e-4 : 1e-15;

@@ -309,8 +309,8 @@ TEST(PhaseAirlight, TablesSweepWithoutNan) {
 // The errors that medium/phase_airlight_method.h quotes, on rays like those of its sets.
 TEST(PhaseAirlight, RungsHaveTheirErrors) {
     const double limits[] = {5, 0.05, 2e-3, 3e-7, 0};
-    for (const PhaseAirlightMethodInfo& info : kPhaseAirlightMethods) {
-        EXPECT_EQ(phase_airlight_method_from_name(info.name), info.method);
+    for (const NamedMethod<PhaseAirlightMethod>& info : kPhaseAirlightMethods) {
+        EXPECT_EQ(method_from_name(kPhaseAirlightMethods, info.name), info.method);
         double worst = 0;
         for (std::size_t i = 0; i < 3000; ++i) {
             SweepDraw draw(i);
@@ -333,7 +333,7 @@ TEST(PhaseAirlight, RungsHaveTheirErrors) {
         EXPECT_TRUE(std::isnan(airlight_hg(1.0, 1.0, 1.0, 1.0, info.method)));
         EXPECT_TRUE(std::isnan(airlight_hg(1.0, -1.0, 1.0, 0.5, info.method)));
     }
-    EXPECT_FALSE(phase_airlight_method_from_name("magic").has_value());
+    EXPECT_FALSE(method_from_name(kPhaseAirlightMethods, "magic").has_value());
 }
 
 TEST(PhaseAirlight, CornersAndRefusals) {

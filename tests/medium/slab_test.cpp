@@ -308,7 +308,7 @@ TEST(Slab, RefusesWhatIsOutsideItsDomainWithNan) {
             EXPECT_TRUE(std::isnan(slab_near(v[0], v[1], v[2], v[3], v[4], v[5]))) << i;
             EXPECT_TRUE(std::isnan(slab_near_flat(v[0], v[1], v[2], v[3], v[4], v[5]))) << i;
             EXPECT_TRUE(std::isnan(slab_thin(v[0], v[1], v[2], v[3], v[4], v[5]))) << i;
-            for (const SlabMethodInfo& info : kSlabMethods) {
+            for (const NamedMethod<SlabMethod>& info : kSlabMethods) {
                 EXPECT_TRUE(std::isnan(slab_near(info.method, v[0], v[1], v[2], v[3], v[4], v[5])))
                     << i << info.name;
             }
@@ -340,11 +340,11 @@ TEST(Slab, ThinApproximationIsWorstForTheCloseLight) {
 }
 
 TEST(SlabMethod, NamesAndMethodsAreOneToOne) {
-    for (const SlabMethodInfo& info : kSlabMethods) {
-        EXPECT_EQ(slab_method_name(info.method), info.name);
-        EXPECT_EQ(slab_method_from_name(info.name), info.method);
+    for (const NamedMethod<SlabMethod>& info : kSlabMethods) {
+        EXPECT_EQ(method_name(kSlabMethods, info.method), info.name);
+        EXPECT_EQ(method_from_name(kSlabMethods, info.name), info.method);
     }
-    EXPECT_FALSE(slab_method_from_name("best").has_value());
+    EXPECT_FALSE(method_from_name(kSlabMethods, "best").has_value());
 }
 
 TEST(SlabMethod, EachRungHasItsErrorAndNoneIsNegative) {
@@ -381,7 +381,7 @@ TEST(SlabMethod, EveryRungHoldsForAnyInput) {
     sweep(
         [](SweepDraw& draw) -> std::string {
             const Ray r = any_ray(draw);
-            for (const SlabMethodInfo& info : kSlabMethods) {
+            for (const NamedMethod<SlabMethod>& info : kSlabMethods) {
                 const double value =
                     slab_near(info.method, r.sigma_t, r.s, r.l, r.w_dot_n, r.wl_dot_n, r.w_dot_wl);
                 if (!(value >= 0)) return report(info.name.data(), r, value);

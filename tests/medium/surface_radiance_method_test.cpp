@@ -29,15 +29,15 @@ SurfaceEvaluator evaluator(SurfaceMethod method, double exponent, int size = 0) 
 
 TEST(SurfaceMethod, NamesAndMethodsAnswerEachOther) {
     std::set<std::string_view> names;
-    for (const SurfaceMethodInfo& info : kSurfaceMethods) {
-        EXPECT_EQ(surface_method_name(info.method), info.name);
-        EXPECT_EQ(surface_method_from_name(info.name), info.method);
+    for (const NamedMethod<SurfaceMethod>& info : kSurfaceMethods) {
+        EXPECT_EQ(method_name(kSurfaceMethods, info.method), info.name);
+        EXPECT_EQ(method_from_name(kSurfaceMethods, info.name), info.method);
         names.insert(info.name);
     }
     EXPECT_EQ(names.size(), std::size(kSurfaceMethods));
     EXPECT_EQ(names.size(), static_cast<std::size_t>(SurfaceMethod::exact) + 1);
-    EXPECT_FALSE(surface_method_from_name("table"));
-    EXPECT_FALSE(surface_method_from_name(""));
+    EXPECT_FALSE(method_from_name(kSurfaceMethods, "table"));
+    EXPECT_FALSE(method_from_name(kSurfaceMethods, ""));
     EXPECT_EQ(SurfaceOptions{}.method, SurfaceMethod::exact);
 }
 
@@ -65,10 +65,11 @@ TEST(SurfaceMethod, EveryRungKeepsItsErrorBound) {
     for (const Bound& bound : bounds) {
         const SurfaceSet set('A', bound.exponent, 4000);
         const RelativeErrors errors = set.errors(evaluator(bound.method, bound.exponent));
-        EXPECT_LE(errors.max, bound.max) << surface_method_name(bound.method) << bound.exponent;
+        EXPECT_LE(errors.max, bound.max)
+            << method_name(kSurfaceMethods, bound.method) << bound.exponent;
         // A bound far above the error would guard nothing.
         EXPECT_GE(errors.max, 0.3 * bound.max)
-            << surface_method_name(bound.method) << bound.exponent;
+            << method_name(kSurfaceMethods, bound.method) << bound.exponent;
     }
 }
 
@@ -94,7 +95,8 @@ TEST(SurfaceMethod, FinerTablesAreMoreAccurate) {
         double previous = kInfinity;
         for (const int size : {16, 32, 64}) {
             const double error = set.errors(evaluator(method, 20, size)).rms;
-            EXPECT_LT(error, factor * previous) << surface_method_name(method) << ' ' << size;
+            EXPECT_LT(error, factor * previous)
+                << method_name(kSurfaceMethods, method) << ' ' << size;
             previous = error;
         }
     }
@@ -124,7 +126,7 @@ TEST(SurfaceMethod, TablesMeetTheirPoints) {
 }
 
 TEST(SurfaceMethod, HaveTheDomainOfTheExactOne) {
-    for (const SurfaceMethodInfo& info : kSurfaceMethods) {
+    for (const NamedMethod<SurfaceMethod>& info : kSurfaceMethods) {
         const SurfaceEvaluator rung = evaluator(info.method, 2.5);
         EXPECT_TRUE(std::isnan(rung(std::nan(""), 1))) << info.name;
         EXPECT_TRUE(std::isnan(rung(1, std::nan("")))) << info.name;
@@ -143,7 +145,7 @@ TEST(SurfaceMethod, HaveTheDomainOfTheExactOne) {
 }
 
 TEST(SurfaceMethod, OptionsOutsideTheirLimitsAreUsageErrors) {
-    for (const SurfaceMethodInfo& info : kSurfaceMethods) {
+    for (const NamedMethod<SurfaceMethod>& info : kSurfaceMethods) {
         for (const double exponent : {0.0, 0.999, 1000.5, -1.0, std::nan(""), kInfinity}) {
             EXPECT_THROW(evaluator(info.method, exponent), Error) << info.name << exponent;
         }
