@@ -194,9 +194,10 @@ Command declare_eval(CLI::App& program) {
             "is added, with 17 significant digits (9 for float). Angles are in radians; inf is a\n"
             "number. Blank lines and lines that begin with # are left out. A row that cannot be\n"
             "computed has the value nan, its line and the reason go to standard error, and the\n"
-            "exit status is 1. With --check, errors are relative (those of a logarithm absolute; "
-            "those of an\n"
-            "inverse function are judged in the forward one). Float values are compared with the\n"
+            "exit status is 1. With --check, errors are relative (those of a "
+            "logarithm\n"
+            "absolute up to 1, those of an inverse function judged in the forward one). Float "
+            "values are compared with the\n"
             "default method in double at the arguments rounded to float, not with the column.");
     const auto request = std::make_shared<EvalRequest>();
     command.app->add_option("function", request->function, "What to compute")->option_text(" ");

@@ -33,6 +33,7 @@ void EvalCheck::read_header(const CsvRecord& record) {
 
 double EvalCheck::error(const EvalArguments& arguments, double value, double expected) const {
     if (value == expected) return 0;
+    if (std::isinf(expected)) return expected;
     if (function_.logarithm) {
         return std::abs(value - expected) / std::max(1.0, std::abs(expected));
     }
@@ -51,14 +52,28 @@ void EvalCheck::add(const std::vector<CsvRecord>& records, std::size_t first,
                     const EvalRows& rows) {
     std::vector<EvalArguments> arguments = rows.arguments;
     std::vector<double> expected(arguments.size());
+    // Rows without arguments, or with some that no float stands for.
+    std::vector<bool> left_out(arguments.size());
+    for (std::size_t i = 0; i < arguments.size(); ++i) left_out[i] = !rows.reasons[i].empty();
     if (precision_ == EvalPrecision::float_precision) {
-        for (EvalArguments& row : arguments) {
-            for (double& argument : row) argument = in_argument_precision(argument, precision_);
+        for (std::size_t i = 0; i < arguments.size(); ++i) {
+            for (double& argument : arguments[i]) {
+                const double rounded = in_argument_precision(argument, precision_);
+                if (std::isinf(rounded) && std::isfinite(argument)) left_out[i] = true;
+                argument = rounded;
+            }
         }
         reference_(arguments, expected);
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            // Rounding may have led out of the domain, as that of g next to 1 does.
+            if (std::isnan(expected[i])) left_out[i] = true;
+            // Beyond the largest float a float result is infinite.
+            const double rounded = in_argument_precision(expected[i], precision_);
+            if (std::isinf(rounded)) expected[i] = rounded;
+        }
     }
     for (std::size_t i = 0; i < arguments.size(); ++i) {
-        if (!rows.reasons[i].empty()) continue;
+        if (left_out[i]) continue;
         if (precision_ == EvalPrecision::double_precision) {
             const CsvRecord& record = records[first + i];
             const std::string field = csv_fields(record.text)[index_];

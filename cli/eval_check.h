@@ -28,7 +28,8 @@ class EvalCheck {
     /// Throws Error(data) when the column is not there.
     void read_header(const CsvRecord& record);
 
-    /// Rows that had no arguments are left out.
+    /// Rows that had no arguments are left out, and so are, in float, those whose arguments
+    /// rounding takes out of range or out of the function's domain.
     void add(const std::vector<CsvRecord>& records, std::size_t first, const EvalRows& rows);
 
     EvalErrors errors() const;

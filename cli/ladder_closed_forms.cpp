@@ -52,7 +52,7 @@ std::vector<double> values_of(const EvalFunction& function, std::size_t method,
 double error_of(const EvalFunction& function, const EvalArguments& arguments, double value,
                 double exact) {
     if (value == exact) return 0;
-    if (function.logarithm) return std::abs(value - exact);
+    if (function.logarithm) return std::abs(value - exact) / std::max(1.0, std::abs(exact));
     if (function.forward) {
         value = function.forward(arguments, value);
         exact = function.forward(arguments, exact);

@@ -19,10 +19,10 @@ INTRODUCTION = """\
 
 Largest, 99th percentile and median error of every function of `airlight eval`, by method and
 precision, over the reference rows in tests/reference, hard cases included. The first method of a
-function is its default. Errors are relative; of `chapman`, whose values are logarithms, absolute;
-of inverse functions, relative in the forward function. Double is compared with the reference
+function is its default. Errors are relative; of `chapman`, whose values are logarithms, absolute up
+to 1; of inverse functions, relative in the forward function. Double is compared with the reference
 values, float with the default method in double at the arguments rounded to float. In brackets: rows
-for which the method has no finite value though there is one.
+for which the method has no finite value though there is one. Rows for which no float stands are left out there.
 
 Most rows are chosen to be hard, so the rungs of a ladder look worse here than on the rays of a
 picture; their cost, and their errors on ordinary input, are in the headers of medium/ and in
