@@ -27,7 +27,7 @@ namespace airlight {
 double particle_irradiance(double beta, double distance);
 
 /// particle_irradiance by a table of G_1(T, 0) e^T, evenly in the cube root of T up to T = 20;
-/// beyond it the exact function. Relative error 1e-5 with the 512 points it has. 25 ns against
+/// beyond it the exact function. Relative error 2e-5 with the 512 points it has. 25 ns against
 /// 5 us. The constructor takes about 10 ms; lookups are const and may run in parallel.
 class ParticleIrradianceTable {
   public:

@@ -393,7 +393,7 @@ TEST(Sweep, FieldsTakeEverySizeWithoutNanOrNegatives) {
             if (!(back >= 0)) return each.report("distance_at_depth", value, back);
             return {};
         },
-        kSweepInputs / 4);
+        kSweepInputs);
 }
 
 }  // namespace

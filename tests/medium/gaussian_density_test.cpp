@@ -146,7 +146,7 @@ TEST(GaussianLine, GrowsWithItsLengthAndFallsWithTheDistanceFromTheCenter) {
             return sweep_report("gaussian_line", {line.a, line.c, line.rho, line.m, line.dist},
                                 depth);
         },
-        kSweepInputs / 2);
+        kSweepInputs);
 }
 
 TEST(GaussianLine, CornersAreTheirLimits) {
@@ -276,7 +276,7 @@ TEST(GaussianLineInverse, SweepComesBackToTheOpticalDepth) {
             if (std::abs(back - tau) <= 1e-12 * tau || dist < 1e-295) return "";
             return sweep_report("line of inverse", arguments, back / tau - 1);
         },
-        kSweepInputs / 4);
+        kSweepInputs);
 }
 
 TEST(GaussianLineInverse, SweepOfAnyInputHasAnAnswer) {
@@ -289,7 +289,7 @@ TEST(GaussianLineInverse, SweepOfAnyInputHasAnAnswer) {
             if (dist >= 0 && (tau > 0 || dist == 0)) return "";
             return sweep_report("inverse", {line.a, line.c, line.rho, line.m, tau}, dist);
         },
-        kSweepInputs / 4);
+        kSweepInputs);
 }
 
 TEST(GaussianLineInverse, CornersAreTheirLimits) {

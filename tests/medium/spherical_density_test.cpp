@@ -347,7 +347,7 @@ TEST(Sweep, SphericalDistanceInvertsTheDepth) {
             }
             return {};
         },
-        kSweepInputs / 5);
+        kSweepInputs);
 }
 
 }  // namespace
