@@ -30,11 +30,15 @@ struct SheetRequest {
 
 std::string label_of(const std::string& path, const Image& map) {
     std::string label = path == "-" ? "stdin" : std::filesystem::path(path).filename().string();
-    if (const Attribute* thickness = map.metadata.find("airlight:opticalThickness")) {
-        if (const auto* text = std::get_if<std::string>(&thickness->value)) {
-            label += "   T = " + *text;
-        }
-    }
+    const auto setting = [&map](const char* name) {
+        const Attribute* attribute = map.metadata.find(name);
+        const auto* text = attribute ? std::get_if<std::string>(&attribute->value) : nullptr;
+        return text ? *text : std::string();
+    };
+    const std::string thickness = setting("airlight:opticalThickness");
+    if (!thickness.empty()) label += "   T = " + thickness;
+    const std::string phase = setting("airlight:phase");
+    if (!phase.empty() && phase != "isotropic") label += "   " + phase;
     return label;
 }
 

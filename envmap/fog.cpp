@@ -26,7 +26,7 @@ namespace {
 
 // What pixel integrals and float pixels add to the error of a kernel.
 constexpr double kRingsError = 1e-6;
-// The scaled kernel's energy is at most 5 (pi^2 / 2 at T = 0): times this, even the largest float
+// The scaled kernel's energy is at most 2.5 (pi^2 / 4 at T = 0): times this, even the largest float
 // scatters less than half the smallest one. A backward peak may lift it by 2 / (1 + g).
 constexpr double kInvisible = 4e-85;
 constexpr double kInvisibleOfPeak = 1e-16 * kInvisible;
