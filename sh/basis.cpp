@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/constants.h"
+#include "sh/basis_recurrence.h"
 #include "sh/index.h"
 
 namespace airlight {
@@ -18,8 +19,8 @@ namespace {
 
 constexpr double kSqrt2 = 1.41421356237309504880;
 
-// Orders up to this one take the short recurrence of low_order_basis.
-constexpr int kLowOrder = 16;
+// Orders up to this one take the tables of low_order_basis.
+constexpr int kLowOrder = detail::kVectorOrder;
 
 // A number value 2^(-kDigit borrowed), so that P_mm of any size can start a recurrence.
 constexpr int kDigit = 600;
@@ -168,41 +169,31 @@ Direction direction_of(double x, double y, double z) {
     return d;
 }
 
-// a and b of P_lm = a z P_{l-1,m} - b P_{l-2,m} in slot l(l+1)/2 + m, and sqrt(2) P_mm / sin^m.
-struct LowOrderTable {
-    std::array<double, kLowOrder*(kLowOrder + 1) / 2> a{}, b{};
-    std::array<double, kLowOrder> sectoral{};
-
-    LowOrderTable() {
-        for (int m = 0; m < kLowOrder; ++m) {
-            sectoral[m] = std::sqrt(double_factorial_ratio(m) / ((m == 0 ? 4 : 2) * kPi));
-            double previous = 0;
-            for (int l = m + 1; l < kLowOrder; ++l) {
-                const double scale =
-                    std::sqrt((2.0 * l - 1) * (2.0 * l + 1) / (double(l - m) * (l + m)));
-                a[l * (l + 1) / 2 + m] = scale;
-                b[l * (l + 1) / 2 + m] = l == m + 1 ? 0 : scale / previous;
-                previous = scale;
-            }
-        }
-    }
-};
-
 // x, y, z of unit length.
 template <class Real>
 void low_order_basis(int order, double x, double y, double z, Real* out) {
-    static const LowOrderTable table;
+    const detail::LoopTable<double>& table = detail::loop_table<double>();
+    // Beside a pole z holds too few digits of the angle, x and y hold them all.
+    const bool polar = std::abs(z) >= 0.5;
+    const double delta = (x * x + y * y) / (1 + std::abs(z)), sign = z < 0 ? -1 : 1;
     double cosine = 1, sine = 0;  // sin^m(theta) cos(m phi) and sin^m(theta) sin(m phi)
     for (int m = 0; m < order; ++m) {
-        double p = table.sectoral[m], previous = 0;
+        const auto& steps = table.steps[m];
+        double p = table.seed[m], previous = 0, difference = 0;
         for (int l = m;;) {
             out[l * (l + 1) - m] = static_cast<Real>(p * sine);
             out[l * (l + 1) + m] = static_cast<Real>(p * cosine);
             if (++l == order) break;
-            const int slot = l * (l + 1) / 2 + m;
-            const double next = table.a[slot] * z * p - table.b[slot] * previous;
-            previous = p;
-            p = next;
+            const detail::Step<double>& step = steps[l];
+            if (polar) {
+                difference = step.keep * difference - step.bend * delta * p;
+                p = sign * (step.grow * p + difference);
+                difference *= sign;
+            } else {
+                const double next = step.a * z * p - step.b * previous;
+                previous = p;
+                p = next;
+            }
         }
         const double turned = x * cosine - y * sine;
         sine = x * sine + y * cosine;
@@ -245,6 +236,13 @@ void high_order_basis(int order, const Direction& d, Real* out) {
 template <class Real>
 void evaluate(int order, double x, double y, double z, Real* out) {
     assert(order >= 0);
+    // |v|^2 - 1, in which a unit vector cancels first; 1 / |v| - 1 = -e / 2 + 3 e^2 / 8 - ...
+    const double e = x * x + (y * y + (z * z - 1));
+    if (order <= kLowOrder && std::abs(e) <= detail::kNearUnit<double>) {
+        const double shift = e * (0.375 * e - 0.5);
+        low_order_basis(order, x + x * shift, y + y * shift, z + z * shift, out);
+        return;
+    }
     const double square = x * x + y * y + z * z;
     if (order <= kLowOrder && square > 1e-200 && square < 1e200) {
         const double scale = 1 / std::sqrt(square);

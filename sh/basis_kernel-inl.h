@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+// The basis of one vector of directions, compiled once per SIMD target (see Highway's
+// foreach_target.h): it has no #pragma once, the guard below turns with the target.
+//
+// visit_basis<kOrder> runs the recurrence of sh/basis_recurrence.h column by column, m = 0 first,
+// and hands every Q_lm to a sink with the powers c, s = Re, Im (x + i y)^m of its column:
+//     void take(int l, int m, V q, V c, V s);   // l = m ... kOrder - 1, constants once inlined
+//     void end_column(int m, V c, V s);
+// A factor that belongs to all of Y, a weight, goes into the powers: the product with it is free.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "sh/basis_recurrence.h"
+#include "sh/index.h"
+
+#if defined(AIRLIGHT_SH_BASIS_KERNEL_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef AIRLIGHT_SH_BASIS_KERNEL_INL_H
+#undef AIRLIGHT_SH_BASIS_KERNEL_INL_H
+#else
+#define AIRLIGHT_SH_BASIS_KERNEL_INL_H
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace airlight {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using detail::Directions;
+using detail::kUnrolledOrder;
+
+template <class Real>
+using TagOf = hn::ScalableTag<Real>;
+template <class Real>
+using VecOf = hn::Vec<TagOf<Real>>;
+template <class Real>
+constexpr std::size_t kMaxLanes = hn::MaxLanes(TagOf<Real>());
+
+// A unit vector per lane; `one` is NaN where the direction is, otherwise 1.
+template <class V>
+struct Unit {
+    V x, y, z, one;
+};
+
+// |v|^2 - 1, in which a unit vector cancels first.
+template <class V>
+HWY_INLINE V excess(V x, V y, V z) {
+    const V one = hn::Set(hn::DFromV<V>(), hn::TFromV<V>(1));
+    return hn::MulAdd(x, x, hn::MulAdd(y, y, hn::MulSub(z, z, one)));
+}
+
+// Makes the lanes that are not `near` unit to a few eps, or NaN.
+template <class Real>
+HWY_NOINLINE void normalize(hn::Mask<TagOf<Real>> near, Unit<VecOf<Real>>& unit) {
+    const TagOf<Real> d;
+    HWY_ALIGN Real lanes[3][kMaxLanes<Real>];
+    hn::Store(unit.x, d, lanes[0]);
+    hn::Store(unit.y, d, lanes[1]);
+    hn::Store(unit.z, d, lanes[2]);
+    detail::rescale_directions(hn::Lanes(d), lanes[0], lanes[1], lanes[2]);
+    const auto x = hn::Load(d, lanes[0]), y = hn::Load(d, lanes[1]), z = hn::Load(d, lanes[2]);
+    const auto one = hn::Set(d, Real(1));
+    const auto square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+    const auto scale = hn::Div(one, hn::Sqrt(square));
+    unit.x = hn::IfThenElse(near, unit.x, hn::Mul(x, scale));
+    unit.y = hn::IfThenElse(near, unit.y, hn::Mul(y, scale));
+    unit.z = hn::IfThenElse(near, unit.z, hn::Mul(z, scale));
+    unit.one = hn::IfThenElse(near, one, hn::Div(square, square));
+}
+
+template <class Real>
+HWY_INLINE Unit<VecOf<Real>> load_unit(const Directions<Real>& in, std::size_t i) {
+    using V = VecOf<Real>;
+    const TagOf<Real> d;
+    Unit<V> unit{hn::LoadU(d, in.x + i), hn::LoadU(d, in.y + i), hn::LoadU(d, in.z + i),
+                 hn::Set(d, Real(1))};
+    V e = excess(unit.x, unit.y, unit.z);
+    const auto near = hn::Le(hn::Abs(e), hn::Set(d, detail::kNearUnit<Real>));
+    if (HWY_UNLIKELY(!hn::AllTrue(d, near))) {
+        normalize<Real>(near, unit);
+        e = excess(unit.x, unit.y, unit.z);
+    }
+    // 1 / |v| - 1 = -e / 2 + 3 e^2 / 8 - ...
+    const V shift = hn::Mul(e, hn::MulSub(e, hn::Set(d, Real(0.375)), hn::Set(d, Real(0.5))));
+    unit.x = hn::MulAdd(unit.x, shift, unit.x);
+    unit.y = hn::MulAdd(unit.y, shift, unit.y);
+    unit.z = hn::MulAdd(unit.z, shift, unit.z);
+    return unit;
+}
+
+template <int kOrder, int kM, int kL, class D, class V, class Sink>
+HWY_INLINE void visit_column(D d, V z, V zz, V before, V q, V c, V s, Sink& sink) {
+    using Real = hn::TFromD<D>;
+    sink.take(kL, kM, q, c, s);
+    if constexpr (kL + 1 < kOrder) {
+        constexpr const double* a = detail::kRecurrence.a[kM];
+        constexpr double b = detail::kRecurrence.b[kM][kL + 1];
+        constexpr double seed = detail::kRecurrence.seed[kM];
+        V next;
+        if constexpr (kL == kM) {
+            next = hn::Mul(hn::Set(d, static_cast<Real>(a[kL + 1] * seed)), z);
+        } else if constexpr (kL == kM + 1) {
+            next = hn::MulAdd(hn::Set(d, static_cast<Real>(a[kL + 1] * a[kL] * seed)), zz,
+                              hn::Set(d, static_cast<Real>(-b * seed)));
+        } else {
+            next = hn::MulSub(hn::Mul(hn::Set(d, static_cast<Real>(a[kL + 1])), z), q,
+                              hn::Mul(hn::Set(d, static_cast<Real>(b)), before));
+        }
+        visit_column<kOrder, kM, kL + 1>(d, z, zz, q, next, c, s, sink);
+    }
+}
+
+template <int kOrder, int kM, class D, class V, class Sink>
+HWY_INLINE void visit_columns(D d, const Unit<V>& unit, V zz, V c, V s, Sink& sink) {
+    const V seed = hn::Set(d, static_cast<hn::TFromD<D>>(detail::kRecurrence.seed[kM]));
+    visit_column<kOrder, kM, kM>(d, unit.z, zz, seed, seed, c, s, sink);
+    sink.end_column(kM, c, s);
+    if constexpr (kM + 1 < kOrder) {
+        const V turned = kM == 0 ? hn::Mul(unit.x, c) : hn::MulSub(unit.x, c, hn::Mul(unit.y, s));
+        s = kM == 0 ? hn::Mul(unit.y, c) : hn::MulAdd(unit.x, s, hn::Mul(unit.y, c));
+        visit_columns<kOrder, kM + 1>(d, unit, zz, turned, s, sink);
+    }
+}
+
+// `weight` times the basis.
+template <int kOrder, class V, class Sink>
+HWY_INLINE void visit_basis(const Unit<V>& unit, V weight, Sink& sink) {
+    const hn::DFromV<V> d;
+    visit_columns<kOrder, 0>(d, unit, hn::Mul(unit.z, unit.z), weight, weight, sink);
+}
+
+template <class Real>
+struct StoreSink {
+    Real* out;
+    std::size_t stride;
+
+    HWY_INLINE void take(int l, int m, VecOf<Real> q, VecOf<Real> c, VecOf<Real> s) {
+        const TagOf<Real> d;
+        // From l = 1 on, q knows of z which lanes are NaN.
+        const VecOf<Real> first = m == 0 && l > 0 ? q : hn::Mul(q, c);
+        hn::StoreU(first, d, out + sh_index(l, m) * stride);
+        if (m > 0) hn::StoreU(hn::Mul(q, s), d, out + sh_index(l, -m) * stride);
+    }
+    HWY_INLINE void end_column(int, VecOf<Real>, VecOf<Real>) {}
+};
+
+// in.count is a multiple of the lanes.
+template <int kOrder, class Real>
+HWY_NOINLINE void evaluate_unrolled(const Directions<Real>& in, Real* out, std::size_t stride) {
+    for (std::size_t i = 0; i < in.count; i += hn::Lanes(TagOf<Real>())) {
+        const auto unit = load_unit(in, i);
+        StoreSink<Real> sink{out + i, stride};
+        visit_basis<kOrder>(unit, unit.one, sink);
+    }
+}
+
+// What one vector of directions carries along a column.
+template <class Real>
+struct Column {
+    using V = VecOf<Real>;
+    Unit<V> unit;
+    hn::Mask<TagOf<Real>> polar;
+    V delta, sign;  // 1 - |z|, and the sign bit of z where polar
+    V c, s, q, before, difference;
+
+    HWY_INLINE Column(const Directions<Real>& in, std::size_t i) : unit(load_unit(in, i)) {
+        const TagOf<Real> d;
+        const V size = hn::Abs(unit.z), one = hn::Set(d, Real(1));
+        polar = hn::Ge(size, hn::Set(d, Real(0.5)));
+        const V square = hn::MulAdd(unit.x, unit.x, hn::Mul(unit.y, unit.y));
+        delta = hn::Div(square, hn::Add(one, size));
+        sign = hn::IfThenElseZero(polar, hn::Xor(size, unit.z));
+        c = unit.one;
+        s = hn::Zero(d);
+    }
+    HWY_INLINE void begin(Real seed) {
+        const TagOf<Real> d;
+        q = hn::Set(d, seed);
+        before = hn::Zero(d);
+        difference = hn::Zero(d);
+    }
+    // Below the equator Q_lm(z) = (-1)^(l-m) Q_lm(-z): both q and difference change sign.
+    HWY_INLINE void climb(const detail::Step<Real>& step) {
+        const TagOf<Real> d;
+        const V value =
+            hn::MulSub(hn::Mul(hn::Set(d, step.a), unit.z), q, hn::Mul(hn::Set(d, step.b), before));
+        difference = hn::NegMulAdd(hn::Mul(hn::Set(d, step.bend), delta), q,
+                                   hn::Mul(hn::Set(d, step.keep), difference));
+        const V other = hn::MulAdd(hn::Set(d, step.grow), q, difference);
+        before = q;
+        q = hn::IfThenElse(polar, hn::Xor(other, sign), value);
+        difference = hn::Xor(difference, sign);
+    }
+    HWY_INLINE void turn() {
+        const V turned = hn::MulSub(unit.x, c, hn::Mul(unit.y, s));
+        s = hn::MulAdd(unit.x, s, hn::Mul(unit.y, c));
+        c = turned;
+    }
+};
+
+template <class Real, class... Columns>
+HWY_INLINE void loop_columns(int order, Real* out, std::size_t stride, Columns&... columns) {
+    const TagOf<Real> d;
+    const std::size_t lanes = hn::Lanes(d);
+    const auto& table = detail::loop_table<Real>();
+    for (int m = 0; m < order; ++m) {
+        (columns.begin(table.seed[m]), ...);
+        Real* cosines = out + sh_index(m, m) * stride;
+        Real* sines = out + sh_index(m, -m) * stride;
+        for (int l = m;;) {
+            // m = 0 is written last, so that its sine half does not stay.
+            std::size_t lane = 0;
+            ((hn::StoreU(hn::Mul(columns.q, columns.s), d, sines + lane),
+              hn::StoreU(hn::Mul(columns.q, columns.c), d, cosines + lane), lane += lanes),
+             ...);
+            if (++l == order) break;
+            cosines += 2 * static_cast<std::size_t>(l) * stride;
+            sines += 2 * static_cast<std::size_t>(l) * stride;
+            (columns.climb(table.steps[m][l]), ...);
+        }
+        (columns.turn(), ...);
+    }
+}
+
+template <class Real>
+HWY_NOINLINE void evaluate_looped(int order, const Directions<Real>& in, Real* out,
+                                  std::size_t stride) {
+    const std::size_t lanes = hn::Lanes(TagOf<Real>());
+    std::size_t i = 0;
+    // Two vectors at once hide the latency of the recurrence.
+    for (; i + 2 * lanes <= in.count; i += 2 * lanes) {
+        Column<Real> first(in, i), second(in, i + lanes);
+        loop_columns(order, out + i, stride, first, second);
+    }
+    if (i < in.count) {
+        Column<Real> last(in, i);
+        loop_columns(order, out + i, stride, last);
+    }
+}
+
+// The order as a constant: descends from the largest to the one asked for.
+template <int kOrder = kUnrolledOrder, class Real>
+void evaluate_whole(int order, const Directions<Real>& in, Real* out, std::size_t stride) {
+    if (order > kOrder) return evaluate_looped(order, in, out, stride);
+    if (order == kOrder) return evaluate_unrolled<kOrder>(in, out, stride);
+    if constexpr (kOrder > 1) evaluate_whole<kOrder - 1>(order, in, out, stride);
+}
+
+// The directions from `first` on, filled up with (0, 0, 1).
+template <class Real, std::size_t kSize>
+struct Tail {
+    HWY_ALIGN Real x[kSize] = {};
+    HWY_ALIGN Real y[kSize] = {};
+    HWY_ALIGN Real z[kSize];
+
+    Tail(const Directions<Real>& in, std::size_t first) {
+        std::fill_n(z, kSize, Real(1));
+        std::copy(in.x + first, in.x + in.count, x);
+        std::copy(in.y + first, in.y + in.count, y);
+        std::copy(in.z + first, in.z + in.count, z);
+    }
+    Directions<Real> directions(std::size_t count) const { return {count, x, y, z}; }
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace airlight
+HWY_AFTER_NAMESPACE();
+
+#endif  // AIRLIGHT_SH_BASIS_KERNEL_INL_H
