@@ -53,10 +53,13 @@ SphericalRay ray_of(const EvalArguments& a) {
 
 Evaluator make_spherical_depth(const std::string& method, EvalPrecision precision) {
     if (method == "batch") {
-        // Its sphere is one for all rays, here every row has its own.
+        // A call has one sphere for all rays, so each run of rows about the same one is a batch.
         return in_batches<5>([](std::size_t count, const auto& x, float* out) {
-            for (std::size_t i = 0; i < count; ++i) {
-                spherical_depth_batch(x[0][i], x[1][i], 1, x[2] + i, x[3] + i, x[4] + i, out + i);
+            for (std::size_t first = 0, i = 1; i <= count; ++i) {
+                if (i < count && x[0][i] == x[0][first] && x[1][i] == x[1][first]) continue;
+                spherical_depth_batch(x[0][first], x[1][first], i - first, x[2] + first,
+                                      x[3] + first, x[4] + first, out + first);
+                first = i;
             }
         });
     }

@@ -158,7 +158,7 @@ Command declare_ladder(CLI::App& program) {
         "  airlight ladder airlight -o report --json\n"
         "DIR gets EFFECT.csv, EFFECT.svg and index.html, one page with all plots and tables. It "
         "is\n"
-        "made if it does not exist. The default takes about a minute. With --threads 1 times\n"
+        "made if it does not exist. The default takes one or two minutes. With --threads 1 times\n"
         "are CPU time, which a busy machine hardly changes; otherwise those of fog are wall time.");
     const auto request = std::make_shared<LadderRequest>();
     command.app

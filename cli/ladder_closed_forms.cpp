@@ -90,7 +90,7 @@ struct Family {
 };
 
 // The first whose part occurs in a method's name has it; the last has the rest.
-const Family kFamilies[] = {{"batch", "SIMD batch, float", kPlotColours[5], false},
+const Family kFamilies[] = {{"batch", "SIMD, float", kPlotColours[5], false},
                             {"table", "tables", kPlotColours[3], false},
                             {"march", "ray march", kPlotColours[1], false},
                             {"gl", "Gauss–Legendre", kPlotColours[0], true},
@@ -135,7 +135,7 @@ Plot make_plot(const ClosedFormLadder& ladder, const Measurement& measurement, s
     for (const Family& family : kFamilies) {
         plot.series.push_back({family.label, family.colour, family.joined, {}});
     }
-    plot.series.push_back({"exact (its stated bound)", kPlotColours[2], false, {}});
+    plot.series.push_back({"exact (its bound)", kPlotColours[2], false, {}});
     for (const Rung& rung : measurement.rungs) {
         if (rung.set != set) continue;
         const std::string& method = measurement.function->methods[rung.method];

@@ -139,6 +139,37 @@ TEST(Ladder, AirlightReportHasEveryMethodOnBothSets) {
     EXPECT_FALSE(std::filesystem::exists(scratch / "fog.csv"));
 }
 
+TEST(Ladder, ClosedFormsHaveARowForEveryMethodAndAnErrorForEveryApproximation) {
+    const ScratchDirectory scratch;
+    const Outcome outcome = run({"ladder", "slab", "atmosphere", "phase", "-o", scratch.path()});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    // As on the sets of bench/, twice what was measured; no method is as good as the exact one.
+    const std::map<std::string, std::map<std::string, double>> bounds = {
+        {"slab", {{"thin", 2}, {"panels-gl8", 1e-6}, {"panels-gl12", 2e-10}}},
+        {"atmosphere", {{"batch", 7e-5}, {"article", 7}}},
+        {"phase", {{"gl8", 2e-2}, {"gl32", 2e-11}}}};
+    for (const auto& [effect, methods] : bounds) {
+        std::map<std::string, double> errors;
+        for (const CsvRow& row : read_csv(scratch / (effect + ".csv"))) {
+            EXPECT_GT(std::stod(row.at("ns_per_call")), 0);
+            if (row.at("method") == "exact") {
+                EXPECT_EQ(row.at("max_relative_error"), "");
+                EXPECT_GT(std::stod(row.at("stated_bound")), 0);
+                continue;
+            }
+            double& largest = errors[row.at("method")];
+            largest = std::max(largest, std::stod(row.at("max_relative_error")));
+        }
+        for (const auto& [method, bound] : methods) {
+            ASSERT_EQ(errors.count(method), 1u) << effect << ' ' << method;
+            EXPECT_LE(errors[method], bound) << effect << ' ' << method;
+        }
+        for (const auto& [method, error] : errors) EXPECT_GT(error, 1e-13) << method;
+        EXPECT_TRUE(std::filesystem::exists(scratch / (effect + ".svg")));
+    }
+    expect_self_contained(read_bytes(scratch / "index.html"));
+}
+
 TEST(Ladder, MistakesAndOldReportsAreRefusedBeforeAnythingIsMeasured) {
     const ScratchDirectory scratch;
     const std::string directory = scratch.path();
