@@ -97,7 +97,7 @@ std::vector<ClosedFormSet> atmosphere_ladder_sets() {
         });
     };
     return {
-        {"10 km", "atmosphere", "rays of 1 … 1000 km in the air of the earth", rays(3, 6)},
+        {"long", "atmosphere", "rays of 1 … 1000 km in the air of the earth", rays(3, 6)},
         {"short", "atmosphere-short", "segments of 1 … 100 m in the air of the earth", rays(0, 2)}};
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // airlight ladder: the report's files, and that what it measures keeps what the plans promise.
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
