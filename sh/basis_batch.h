@@ -8,8 +8,8 @@
 //
 // Only the direction counts, as in evaluate_basis: any finite vector is normalised; the zero
 // vector counts as (0, 0, 1); where a component is not finite, all Y_lm are NaN, whatever the other
-// directions are. Directions with |v|^2 beyond 0.3 % of 1 in float, 4e-6 in double, take half the
-// time again, and those with |v|^2 outside 1e+-20 or 1e+-200 several times as long.
+// directions are. Directions with |v|^2 beyond 0.3 % of 1 in float, 4e-6 in double, take 1.5 to 1.8
+// times as long, and those with |v|^2 outside 1e+-20 or 1e+-200 up to nine times.
 //
 // Error of a basis function of a direction v of the precision's own, exactly v / |v|, in units of
 // eps sqrt((2l+1)/(4 pi)) with eps = 2^-23 or 2^-52: under 3 + 2 l for orders up to 8, under

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "sh/aligned.h"
 #include "sh/basis_recurrence.h"
 #include "sh/index.h"
 
@@ -50,23 +51,39 @@ HWY_INLINE V excess(V x, V y, V z) {
     return hn::MulAdd(x, x, hn::MulAdd(y, y, hn::MulSub(z, z, one)));
 }
 
-// Makes the lanes that are not `near` unit to a few eps, or NaN.
 template <class Real>
-HWY_NOINLINE void normalize(hn::Mask<TagOf<Real>> near, Unit<VecOf<Real>>& unit) {
+void rescale(Unit<VecOf<Real>>& unit) {
     const TagOf<Real> d;
     HWY_ALIGN Real lanes[3][kMaxLanes<Real>];
     hn::Store(unit.x, d, lanes[0]);
     hn::Store(unit.y, d, lanes[1]);
     hn::Store(unit.z, d, lanes[2]);
     detail::rescale_directions(hn::Lanes(d), lanes[0], lanes[1], lanes[2]);
-    const auto x = hn::Load(d, lanes[0]), y = hn::Load(d, lanes[1]), z = hn::Load(d, lanes[2]);
+    unit.x = hn::Load(d, lanes[0]);
+    unit.y = hn::Load(d, lanes[1]);
+    unit.z = hn::Load(d, lanes[2]);
+}
+
+// Makes the lanes that are not `near` unit to a few eps, or NaN.
+template <class Real>
+HWY_NOINLINE void normalize(hn::Mask<TagOf<Real>> near, Unit<VecOf<Real>>& unit) {
+    const TagOf<Real> d;
     const auto one = hn::Set(d, Real(1));
-    const auto square = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
-    const auto scale = hn::Div(one, hn::Sqrt(square));
-    unit.x = hn::IfThenElse(near, unit.x, hn::Mul(x, scale));
-    unit.y = hn::IfThenElse(near, unit.y, hn::Mul(y, scale));
-    unit.z = hn::IfThenElse(near, unit.z, hn::Mul(z, scale));
-    unit.one = hn::IfThenElse(near, one, hn::Div(square, square));
+    const auto squared_length = [](const auto& v) {
+        return hn::MulAdd(v.x, v.x, hn::MulAdd(v.y, v.y, hn::Mul(v.z, v.z)));
+    };
+    auto square = squared_length(unit);
+    const auto usual = hn::And(hn::Ge(square, hn::Set(d, detail::kLeastSquare<Real>)),
+                               hn::Le(square, hn::Set(d, detail::kLargestSquare<Real>)));
+    if (HWY_UNLIKELY(!hn::AllTrue(d, usual))) {
+        rescale<Real>(unit);
+        square = squared_length(unit);
+    }
+    const auto scale = hn::IfThenElse(near, one, hn::Div(one, hn::Sqrt(square)));
+    unit.x = hn::Mul(unit.x, scale);
+    unit.y = hn::Mul(unit.y, scale);
+    unit.z = hn::Mul(unit.z, scale);
+    unit.one = hn::Div(square, square);
 }
 
 template <class Real>
@@ -261,6 +278,41 @@ struct Tail {
         std::copy(in.z + first, in.z + in.count, z);
     }
     Directions<Real> directions(std::size_t count) const { return {count, x, y, z}; }
+};
+
+// Sums over one channel of a small order take the basis straight from the recurrence. For several
+// channels, and for larger orders, this many vectors of directions have their basis in the
+// first-level cache, where every channel passes over it.
+constexpr std::size_t kBlock = 4;
+
+template <class Real>
+constexpr std::size_t block_size() {
+    return kBlock * hn::Lanes(TagOf<Real>());
+}
+
+// basis(first) is that of the block of directions that begins there, (slots, block_size).
+template <class Real>
+class Block {
+  public:
+    Block(int order, const Directions<Real>& in) : order_(order), in_(in) {
+        basis_.resize(sh_count(order) * block_size<Real>());
+    }
+
+    const Real* basis(std::size_t first) {
+        const std::size_t size = block_size<Real>();
+        if (first + size <= in_.count) {
+            evaluate_whole(order_, in_.from(first, size), basis_.data(), size);
+        } else {
+            const Tail<Real, kBlock * kMaxLanes<Real>> tail(in_, first);
+            evaluate_whole(order_, tail.directions(size), basis_.data(), size);
+        }
+        return basis_.data();
+    }
+
+  private:
+    int order_;
+    Directions<Real> in_;
+    AlignedVector<Real> basis_;
 };
 
 }  // namespace HWY_NAMESPACE

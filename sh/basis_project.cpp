@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// project_basis_batch and reconstruct_basis_batch.
-//
-// One channel of a small order: the basis goes from the recurrence straight into the sums. Several
-// channels, and larger orders: kBlock vectors of directions have their basis in the first-level
-// cache, where every channel passes over it.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "sh/basis_sums.cpp"
+#define HWY_TARGET_INCLUDE "sh/basis_project.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -23,40 +18,8 @@ HWY_BEFORE_NAMESPACE();
 namespace airlight {
 namespace HWY_NAMESPACE {
 
-constexpr std::size_t kBlock = 4;
 // After so many vectors the sums go to double.
 constexpr std::size_t kFlush = 64;
-
-template <class Real>
-constexpr std::size_t block_size() {
-    return kBlock * hn::Lanes(TagOf<Real>());
-}
-
-// The basis of the block of directions that begins at `first`, (slots, block_size). Channels of
-// that block are at values(c), (block_size), zeros where directions end.
-template <class Real>
-class Block {
-  public:
-    Block(int order, const Directions<Real>& in) : order_(order), in_(in) {
-        basis_.resize(sh_count(order) * block_size<Real>());
-    }
-
-    const Real* basis(std::size_t first) {
-        const std::size_t size = block_size<Real>();
-        if (first + size <= in_.count) {
-            evaluate_whole(order_, in_.from(first, size), basis_.data(), size);
-        } else {
-            const Tail<Real, kBlock * kMaxLanes<Real>> tail(in_, first);
-            evaluate_whole(order_, tail.directions(size), basis_.data(), size);
-        }
-        return basis_.data();
-    }
-
-  private:
-    int order_;
-    Directions<Real> in_;
-    AlignedVector<Real> basis_;
-};
 
 // Sums of one call: per lane in Real, now and then added to those in double.
 template <class Real>
@@ -109,23 +72,6 @@ struct ProjectSink {
     HWY_INLINE void end_column(int, VecOf<Real>, VecOf<Real>) {}
 };
 
-template <class Real>
-struct ReconstructSink {
-    const Real* coefficients;
-    VecOf<Real> sum, cosine, sine;
-
-    HWY_INLINE VecOf<Real> factor(int l, int m) const {
-        return hn::Set(TagOf<Real>(), coefficients[sh_index(l, m)]);
-    }
-    HWY_INLINE void take(int l, int m, VecOf<Real> q, VecOf<Real>, VecOf<Real>) {
-        cosine = l == m ? hn::Mul(factor(l, m), q) : hn::MulAdd(factor(l, m), q, cosine);
-        if (m > 0) sine = l == m ? hn::Mul(factor(l, -m), q) : hn::MulAdd(factor(l, -m), q, sine);
-    }
-    HWY_INLINE void end_column(int m, VecOf<Real> c, VecOf<Real> s) {
-        sum = m == 0 ? hn::Mul(cosine, c) : hn::MulAdd(cosine, c, hn::MulAdd(sine, s, sum));
-    }
-};
-
 template <int kOrder, class Real>
 HWY_NOINLINE void project_whole(const Directions<Real>& in, const Real* values,
                                 LaneSums<Real>& sums) {
@@ -155,31 +101,6 @@ void project_one(const Directions<Real>& in, const Real* values, double* coeffic
         project_whole<kOrder>(tail.directions(lanes), padded, sums);
     }
     sums.add_to(coefficients);
-}
-
-template <int kOrder, class Real>
-HWY_NOINLINE void reconstruct_whole(const Directions<Real>& in, const Real* coefficients,
-                                    Real* out) {
-    const TagOf<Real> d;
-    const VecOf<Real> zero = hn::Zero(d);
-    for (std::size_t i = 0; i < in.count; i += hn::Lanes(d)) {
-        const auto unit = load_unit(in, i);
-        ReconstructSink<Real> sink{coefficients, zero, zero, zero};
-        visit_basis<kOrder>(unit, unit.one, sink);
-        hn::StoreU(sink.sum, d, out + i);
-    }
-}
-
-template <int kOrder, class Real>
-void reconstruct_one(const Directions<Real>& in, const Real* coefficients, Real* out) {
-    const std::size_t lanes = hn::Lanes(TagOf<Real>());
-    const std::size_t whole = in.count - in.count % lanes;
-    reconstruct_whole<kOrder>(in.from(0, whole), coefficients, out);
-    if (whole == in.count) return;
-    const Tail<Real, kMaxLanes<Real>> tail(in, whole);
-    HWY_ALIGN Real values[kMaxLanes<Real>];
-    reconstruct_whole<kOrder>(tail.directions(lanes), coefficients, values);
-    std::copy_n(values, in.count - whole, out + whole);
 }
 
 // kChannels of them at `values`, `count` apart; sums are (channels, slots, lanes).
@@ -247,60 +168,6 @@ void project_channels(int order, const Directions<Real>& in, std::size_t channel
     sums.add_to(coefficients);
 }
 
-// Into (kChannels, block_size) at `out`, rows `count` apart.
-template <std::size_t kChannels, class Real>
-HWY_NOINLINE void reconstruct_block(std::size_t slots, const Real* basis, const Real* coefficients,
-                                    Real* out, std::size_t count) {
-    const TagOf<Real> d;
-    const std::size_t lanes = hn::Lanes(d);
-    VecOf<Real> sum[kChannels][kBlock];
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        for (std::size_t v = 0; v < kBlock; ++v) sum[c][v] = hn::Zero(d);
-    }
-    for (std::size_t slot = 0; slot < slots; ++slot) {
-        VecOf<Real> factor[kChannels];
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            factor[c] = hn::Set(d, coefficients[c * slots + slot]);
-        }
-        for (std::size_t v = 0; v < kBlock; ++v) {
-            const VecOf<Real> y = hn::Load(d, basis + (slot * kBlock + v) * lanes);
-            for (std::size_t c = 0; c < kChannels; ++c) {
-                sum[c][v] = hn::MulAdd(factor[c], y, sum[c][v]);
-            }
-        }
-    }
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        for (std::size_t v = 0; v < kBlock; ++v) {
-            hn::StoreU(sum[c][v], d, out + c * count + v * lanes);
-        }
-    }
-}
-
-template <class Real>
-void reconstruct_channels(int order, const Directions<Real>& in, std::size_t channels,
-                          const Real* coefficients, Real* out) {
-    const std::size_t slots = sh_count(order), size = block_size<Real>();
-    Block<Real> block(order, in);
-    AlignedVector<Real> padded;
-    for (std::size_t first = 0; first < in.count; first += size) {
-        const Real* basis = block.basis(first);
-        const bool whole = first + size <= in.count;
-        if (!whole) padded.resize(channels * size);
-        Real* own = whole ? out + first : padded.data();
-        const std::size_t apart = whole ? in.count : size;
-        std::size_t c = 0;
-        for (; c + 2 <= channels; c += 2) {
-            reconstruct_block<2>(slots, basis, coefficients + c * slots, own + c * apart, apart);
-        }
-        if (c < channels) {
-            reconstruct_block<1>(slots, basis, coefficients + c * slots, own + c * apart, apart);
-        }
-        for (c = 0; !whole && c < channels; ++c) {
-            std::copy_n(own + c * size, in.count - first, out + c * in.count + first);
-        }
-    }
-}
-
 template <int kOrder = kUnrolledOrder, class Real>
 void project(int order, const Directions<Real>& in, int channels, const Real* values,
              double* coefficients) {
@@ -312,17 +179,6 @@ void project(int order, const Directions<Real>& in, int channels, const Real* va
     if constexpr (kOrder > 1) project<kOrder - 1>(order, in, channels, values, coefficients);
 }
 
-template <int kOrder = kUnrolledOrder, class Real>
-void reconstruct(int order, const Directions<Real>& in, int channels, const Real* coefficients,
-                 Real* out) {
-    if (channels != 1 || order > kOrder) {
-        return reconstruct_channels(order, in, static_cast<std::size_t>(channels), coefficients,
-                                    out);
-    }
-    if (order == kOrder) return reconstruct_one<kOrder>(in, coefficients, out);
-    if constexpr (kOrder > 1) reconstruct<kOrder - 1>(order, in, channels, coefficients, out);
-}
-
 void project_float(int order, const Directions<float>& in, int channels, const float* values,
                    double* coefficients) {
     project(order, in, channels, values, coefficients);
@@ -331,15 +187,6 @@ void project_double(int order, const Directions<double>& in, int channels, const
                     double* coefficients) {
     project(order, in, channels, values, coefficients);
 }
-void reconstruct_float(int order, const Directions<float>& in, int channels,
-                       const float* coefficients, float* out) {
-    reconstruct(order, in, channels, coefficients, out);
-}
-void reconstruct_double(int order, const Directions<double>& in, int channels,
-                        const double* coefficients, double* out) {
-    reconstruct(order, in, channels, coefficients, out);
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace airlight
 HWY_AFTER_NAMESPACE();
@@ -362,27 +209,10 @@ void project_one_by_one(int order, const detail::Directions<Real>& in, int chann
     }
 }
 
-template <class Real>
-void reconstruct_one_by_one(int order, const detail::Directions<Real>& in, int channels,
-                            const Real* coefficients, Real* out) {
-    std::vector<Real> basis(sh_count(order));
-    for (std::size_t i = 0; i < in.count; ++i) {
-        evaluate_basis(order, in.x[i], in.y[i], in.z[i], basis.data());
-        const Real* coefficient = coefficients;
-        for (int c = 0; c < channels; ++c) {
-            double sum = 0;
-            for (const Real y : basis) sum += static_cast<double>(*coefficient++) * y;
-            out[static_cast<std::size_t>(c) * in.count + i] = static_cast<Real>(sum);
-        }
-    }
-}
-
 }  // namespace
 
 HWY_EXPORT(project_float);
 HWY_EXPORT(project_double);
-HWY_EXPORT(reconstruct_float);
-HWY_EXPORT(reconstruct_double);
 
 void project_basis_batch(int order, std::size_t count, const float* x, const float* y,
                          const float* z, int channels, const float* values, double* coefficients) {
@@ -405,31 +235,6 @@ void project_basis_batch(int order, std::size_t count, const double* x, const do
         return project_one_by_one(order, in, channels, values, coefficients);
     }
     HWY_DYNAMIC_DISPATCH(project_double)(order, in, channels, values, coefficients);
-}
-
-void reconstruct_basis_batch(int order, std::size_t count, const float* x, const float* y,
-                             const float* z, int channels, const float* coefficients, float* out) {
-    assert(order >= 0 && channels >= 0);
-    if (order == 0) std::fill_n(out, static_cast<std::size_t>(channels) * count, float(0));
-    if (order == 0 || channels == 0) return;
-    const detail::Directions<float> in{count, x, y, z};
-    if (order > detail::kVectorOrder) {
-        return reconstruct_one_by_one(order, in, channels, coefficients, out);
-    }
-    HWY_DYNAMIC_DISPATCH(reconstruct_float)(order, in, channels, coefficients, out);
-}
-
-void reconstruct_basis_batch(int order, std::size_t count, const double* x, const double* y,
-                             const double* z, int channels, const double* coefficients,
-                             double* out) {
-    assert(order >= 0 && channels >= 0);
-    if (order == 0) std::fill_n(out, static_cast<std::size_t>(channels) * count, double(0));
-    if (order == 0 || channels == 0) return;
-    const detail::Directions<double> in{count, x, y, z};
-    if (order > detail::kVectorOrder) {
-        return reconstruct_one_by_one(order, in, channels, coefficients, out);
-    }
-    HWY_DYNAMIC_DISPATCH(reconstruct_double)(order, in, channels, coefficients, out);
 }
 
 }  // namespace airlight
