@@ -130,6 +130,9 @@ std::string list_methods() {
 
 void run_eval(const EvalRequest& request, bool json) {
     if (request.list) {
+        if (!request.function.empty() || !request.check.empty()) {
+            throw Error(ErrorCode::usage, "takes no function and no --check", "--list");
+        }
         print(list_methods());
         return;
     }

@@ -83,6 +83,11 @@ void EvalCheck::add(const std::vector<CsvRecord>& records, std::size_t first,
                             fmt::format("{} = '{}' is no number of double range", column_, field),
                             fmt::format("{}:{}", kEvalInput, record.line));
             }
+            if (std::isnan(*number)) {
+                throw Error(ErrorCode::data,
+                            fmt::format("{} = {} is nothing to compare with", column_, field),
+                            fmt::format("{}:{}", kEvalInput, record.line));
+            }
             expected[i] = *number;
         }
         const double value = rows.values[i];

@@ -19,8 +19,8 @@
 namespace airlight {
 namespace {
 
-// Finer than any measurement, and a fraction of a second to integrate.
-constexpr std::size_t kMostEntries = 4096;
+// Finer than measurements are; fog of a whole map takes about 5 s to prepare with so many.
+constexpr std::size_t kMostEntries = 1024;
 
 double field_number(const std::string& text, const std::string& column, const std::string& where) {
     const std::optional<double> number = parse_double(text);
@@ -88,7 +88,7 @@ PhaseFunction parse_phase(const std::string& text, const std::string& flag) {
     if (const auto g = rest("hg:")) {
         return PhaseFunction::henyey_greenstein(parse_number(*g, flag, {-1, 1, true, true}));
     }
-    if (const auto path = rest("table:")) return read_table(*path);
+    if (const auto path = rest("table:"); path && !path->empty()) return read_table(*path);
     throw Error(ErrorCode::usage,
                 fmt::format("'{}' is none of isotropic, rayleigh, hg:G and table:FILE", text),
                 flag);

@@ -52,12 +52,19 @@ bool is_valid(const SphericalExponentialDensity& part) {
 
 // |x - center| and what it is above the sphere.
 TwoDoubles distance_between(const glm::dvec3& x, const glm::dvec3& center) {
+    double largest = 0;
+    for (int i = 0; i < 3; ++i) {
+        largest = std::max({largest, std::abs(x[i]), std::abs(center[i])});
+    }
+    // Squares of what is farther would overflow.
+    const double unit = largest < 1e150 ? 1 : std::ldexp(1.0, std::ilogb(largest));
     TwoDoubles sum = {0, 0};
     for (int i = 0; i < 3; ++i) {
-        const TwoDoubles part = detail::two_sum(x[i], -center[i]);
+        const TwoDoubles part = detail::two_sum(x[i] / unit, -center[i] / unit);
         sum = sum + part * part;
     }
-    return square_root(sum);
+    const TwoDoubles root = square_root(sum);
+    return {root.hi * unit, root.lo * unit};
 }
 
 SphericalPath path_of(const SphericalExponentialDensity& part, const glm::dvec3& origin,
@@ -67,7 +74,8 @@ SphericalPath path_of(const SphericalExponentialDensity& part, const glm::dvec3&
     for (int i = 0; i < 3; ++i) {
         along = along + detail::two_sum(origin[i], -part.center[i]) * TwoDoubles{direction[i], 0};
     }
-    const double periapsis = glm::length(glm::cross(origin - part.center, direction));
+    const glm::dvec3 across = glm::cross(origin - part.center, direction);
+    const double periapsis = std::hypot(across.x, across.y, across.z);
     return {r, r + TwoDoubles{-part.radius, 0}, along, {periapsis, 0}};
 }
 
@@ -113,7 +121,7 @@ struct SlopeAt {
     }
     double operator()(const SphericalExponentialDensity& part) const {
         const glm::dvec3 out = x - part.center;
-        const double r = glm::length(out);
+        const double r = std::hypot(out.x, out.y, out.z);
         return slope_of(density, part.scale_height) * (r > 0 ? glm::dot(out, direction) / r : 1);
     }
     double operator()(const GaussianBlob& part) const {
@@ -154,10 +162,10 @@ struct DepthAlong {
     }
 };
 
-// On the infinite ray.
+// At most max_distance; beyond it, that or more.
 struct DistanceAtDepth {
     glm::dvec3 origin, direction;
-    double depth;
+    double depth, max_distance;
 
     double operator()(const UniformDensity& part) const {
         return is_amount(part.density) ? depth / part.density : kNan;
@@ -175,7 +183,7 @@ struct DistanceAtDepth {
         const SphericalPath path = path_of(part, origin, direction);
         if (!(path.r.hi / part.scale_height <= kLargestZ)) return kNan;
         const SphericalComponent component = {part.density, part.scale_height};
-        return spherical_distance(path, &component, 1, part.radius, kInfinity, depth);
+        return spherical_distance(path, &component, 1, part.radius, max_distance, depth);
     }
     double operator()(const GaussianBlob& part) const {
         const GaussianPass pass = gaussian_pass(part.center, origin, direction);
@@ -198,7 +206,8 @@ double reaching_distance(const DensityField& field, const glm::dvec3& origin,
     // What one part gathers all of them do.
     double nearest = max_distance;
     for (const Density& part : field.parts) {
-        const double alone = std::visit(DistanceAtDepth{origin, direction, depth}, part);
+        const double alone =
+            std::visit(DistanceAtDepth{origin, direction, depth, max_distance}, part);
         if (alone < nearest) nearest = alone;
     }
     if (std::isfinite(nearest)) return nearest;
@@ -251,7 +260,8 @@ double distance_at_depth(const Density& density, const glm::dvec3& origin,
     if (std::isnan(whole)) return kNan;
     if (depth == 0) return 0;
     if (depth > whole) return depth > whole * (1 + kFullDepth) ? kInfinity : max_distance;
-    return std::min(max_distance, std::visit(DistanceAtDepth{origin, v, depth}, density));
+    return std::min(max_distance,
+                    std::visit(DistanceAtDepth{origin, v, depth, max_distance}, density));
 }
 
 double distance_at_depth(const DensityField& field, const glm::dvec3& origin,
@@ -265,7 +275,7 @@ double distance_at_depth(const DensityField& field, const glm::dvec3& origin,
     if (std::isnan(whole)) return kNan;
     if (depth == 0) return 0;
     if (depth > whole) return depth > whole * (1 + kFullDepth) ? kInfinity : max_distance;
-    if (std::isinf(depth)) return kInfinity;
+    if (std::isinf(depth)) return max_distance;
     const double hi = reaching_distance(field, origin, v, max_distance, depth);
     if (std::isinf(hi)) return hi;
     const double there = depth_along(field, origin, v, hi);

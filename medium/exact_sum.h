@@ -85,7 +85,7 @@ inline Scaled square_root(Scaled a) {
 
 /// e^{hi + lo}.
 inline Scaled scaled_exp(double hi, double lo = 0) {
-    // Far beyond what any product with doubles can bring back.
+    // Far beyond what any product with doubles can bring back; its logarithm means nothing.
     if (!(std::abs(hi) < 1e5)) return {1, hi < 0 ? -150000 : 150000};
     const double k = std::nearbyint(hi * 1.4426950408889634);
     // ln 2 in two parts, the first with zeros at its end so that k times it is exact.

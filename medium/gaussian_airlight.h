@@ -24,9 +24,11 @@ struct GaussianAirlightOptions {
 ///     L_a / I_0 = 1 / (4 pi) int_0^dist beta(x(t)) exp(-T(v, x) - T(x, s)) / |x - s|^2 dt
 /// at albedo 1; multiply by the albedo.
 ///
-/// Domain: coordinates up to 1e100 in size, beta0, scales and amplitudes in [0, 1e100]; anything
-/// else gives NaN. Corners: an empty medium or dist = 0 gives 0; a ray that runs through the light
-/// itself, or a viewer at the light, diverges: +inf. Never negative.
+/// Domain: coordinates up to 1e100 in size, beta0, scales and amplitudes in [0, 1e100], and blobs
+/// no narrower than 1e-12 of their distances to viewer and light, where coordinates cease to tell
+/// what passes through them; anything else gives NaN. Corners: an empty medium or dist = 0 gives 0;
+/// a ray that runs through the light itself, or a viewer at the light, diverges: +inf. Never
+/// negative.
 ///
 /// Method: between breakpoints at the light's foot and around each blob, Gauss-Kronrod rules of 7
 /// and 15 nodes in q = asinh(x / h), which takes the light's 1 / d^2 away; panels are halved where

@@ -205,7 +205,8 @@ GaussianPass gaussian_pass(const glm::dvec3& center, const glm::dvec3& origin,
     if (!(std::abs(square - 1) <= 1e-5)) return {kNan, kNan};
     const double length = std::sqrt(square);
     const glm::dvec3 to = center - origin;
-    return {glm::length(glm::cross(to, direction)) / length, glm::dot(to, direction) / length};
+    const glm::dvec3 across = glm::cross(to, direction);
+    return {std::hypot(across.x, across.y, across.z) / length, glm::dot(to, direction) / length};
 }
 
 double gaussian_line(double a, double c, double rho_perp, double m_proj, double dist) {
@@ -246,7 +247,7 @@ double gaussian_optical_depth(const GaussianBlob& blob, const glm::dvec3& origin
 double gaussian_optical_depth(const GaussianBlob& blob, const glm::dvec3& from,
                               const glm::dvec3& to) {
     const glm::dvec3 span = to - from;
-    const double dist = glm::length(span);
+    const double dist = std::hypot(span.x, span.y, span.z);
     if (dist == 0) return gaussian_line(blob.scale, blob.amplitude, 0, 0, 0);
     return gaussian_optical_depth(blob, from, span / dist, dist);
 }

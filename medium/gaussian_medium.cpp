@@ -24,6 +24,9 @@ double norm(const glm::dvec3& v) {
     return std::hypot(v.x, v.y, v.z);
 }
 
+// Distance over width of a blob beyond which rounded coordinates do not tell what passes it.
+constexpr double kNarrowest = 1e12;
+
 bool within_limits(const glm::dvec3& v) {
     return std::abs(v.x) <= kLargestLength && std::abs(v.y) <= kLargestLength &&
            std::abs(v.z) <= kLargestLength;
@@ -61,6 +64,7 @@ GaussianRay::GaussianRay(const GaussianMedium& medium, const glm::dvec3& viewer,
             continue;
         }
         const glm::dvec3 to = blob.center - viewer;
+        if (!(blob.scale * std::max(norm(to), norm(blob.center - light)) <= kNarrowest)) return;
         blobs_.push_back({blob.scale, blob.amplitude, norm(glm::cross(to, direction_)),
                           glm::dot(to, direction_), blob.center - light});
     }

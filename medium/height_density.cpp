@@ -105,10 +105,14 @@ double exponential_height_distance(double depth, double height, double up, doubl
         const double stretch = w == 0 ? 1 : -std::log1p(-w) / w;
         return value(straight * scaled(stretch));
     }
-    const double logarithm =
-        std::isinf(w) ? std::log(-scaled_w.mantissa) + scaled_w.exponent * 0.69314718055994530942
-                      : std::log1p(-w);
-    return std::abs(value(scaled(logarithm) / rate));
+    if (std::isinf(w)) {
+        // ln(-w) = ln(-rate depth) + n h, whose exponential no number may hold; by the rate, n h is
+        // a plain height.
+        const Scaled thin = rate * scaled(depth);
+        const double rest = std::log(-thin.mantissa) + thin.exponent * 0.69314718055994530942;
+        return std::max(0.0, -height / up - value(scaled(rest) / rate));
+    }
+    return std::abs(value(scaled(std::log1p(-w)) / rate));
 }
 
 double linear_height_depth(double slope, double density, double height, double up,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "medium/exact_sum.h"
 #include "medium/slab_integral.h"
 
 namespace airlight {
@@ -130,8 +131,9 @@ double slab_thin(double sigma_t, double s, double l, double w_dot_n, double wl_d
     const double falloff = slab_falloff(s, l, w_dot_wl);
     if (!(flat >= 0 && falloff >= 0)) return kNan;
     if (s == 0 || flat == 0) return 0;
-    const double mean = std::isinf(flat) ? 1 : flat / s;
-    return mean == 0 ? 0 : mean * falloff;
+    if (std::isinf(flat)) return falloff;
+    if (std::isinf(s) || std::isinf(falloff)) return std::isinf(falloff) ? falloff : 0;
+    return value(detail::scaled(flat) / detail::scaled(s) * detail::scaled(falloff));
 }
 
 float slab_distant(float sigma_t, float s, float w_dot_n, float wl_dot_n) {

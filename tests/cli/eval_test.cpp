@@ -155,6 +155,9 @@ TEST(Eval, ACheckTellsHowFarTheValuesAre) {
     EXPECT_EQ(words.out,
               "npsf, exact, double: 1 rows, relative error max 0.001, p99 0.001, median 0.001\n");
     expect_failure({"eval", "npsf", "--check", "yours"}, 1, "the header has no column yours", csv);
+    expect_failure({"eval", "npsf", "--check", "mine"}, 1, "2: mine = nan is nothing to compare",
+                   "gamma,mine\n0.5,nan\n0.5,5\n");
+    expect_failure({"eval", "npsf", "--list"}, 2, "--list: takes no function");
     expect_failure({"eval", "npsf", "--check", "mine"}, 1, "mine = 'x' is no number",
                    "gamma,mine\n0.5,x\n");
     const Outcome bad = run({"eval", "npsf", "--check", "mine"}, "gamma,mine\n-1,2\n");

@@ -116,6 +116,10 @@ TEST(Usage, NumbersAreTakenWholeAndWithinTheirLimits) {
         expect_failure({"fog", "a.exr", "b.exr", "--optical-thickness", "1", "--phase", "hg:" + g},
                        kUsage, "--phase: '" + g + "' is not a number in (-1, 1)");
     }
+    for (const std::string phase : {"", "table:", "HG:0.5"}) {
+        expect_failure({"fog", "a.exr", "b.exr", "--optical-thickness", "1", "--phase", phase},
+                       kUsage, "--phase: '" + phase + "' is none of isotropic, rayleigh, hg:G");
+    }
     refuse("--tolerance", "0", "is not a number in [1e-06, 1)");
     refuse("--tolerance", "1", "is not a number in [1e-06, 1)");
     refuse("--threads", "0", "is not an integer in [1, 4096]");

@@ -396,5 +396,41 @@ TEST(Sweep, FieldsTakeEverySizeWithoutNanOrNegatives) {
         kSweepInputs);
 }
 
+TEST(DensityField, FarPointsAreOrdinary) {
+    const glm::dvec3 right(1, 0, 0);
+    for (const double far : {1e154, 1e155, 1e300}) {
+        const glm::dvec3 there(0, far, 0);
+        const double infinity = std::numeric_limits<double>::infinity();
+        const Density uniform = SphericalExponentialDensity{glm::dvec3(0), 1, 1, infinity};
+        EXPECT_EQ(optical_depth(uniform, there, right, 1), 1) << far;
+        const Density blob = GaussianBlob{glm::dvec3(0), 1, 1};
+        EXPECT_EQ(optical_depth(blob, there, right, 1), 0) << far;
+    }
+    // r / H = 1: e^{-1} of the density at the center.
+    const Density wide = SphericalExponentialDensity{glm::dvec3(0), 0, 1, 1e300};
+    EXPECT_NEAR(density_at(wide, glm::dvec3(0, 1e300, 0)), std::exp(-1.0), 1e-15);
+    EXPECT_NEAR(optical_depth(wide, glm::dvec3(0, 1e300, 0), right, 1), std::exp(-1.0), 1e-15);
+}
+
+TEST(DensityField, HugeDepthsAreReachedWhereTheyAre) {
+    const DensityField planet{
+        {SphericalExponentialDensity{glm::dvec3(0, -6371000, 0), 6371000, 0.00718, 16.658}}};
+    const glm::dvec3 origin(0, 60, 0), down(0, -1, 0);
+    for (const double depth : {1e303, 5e304, 1e305}) {
+        const double distance = distance_at_depth(planet, origin, down, 11812, depth);
+        EXPECT_LT(distance, 11812) << depth;
+        EXPECT_NEAR(optical_depth(planet, origin, down, distance) / depth, 1, 1e-12) << depth;
+    }
+}
+
+TEST(DensityField, ACollisionLiesWithinItsSegment) {
+    DensityField field{{ExponentialHeightDensity{1, 1}}};
+    const glm::dvec3 origin(0), down(0, -1, 0);
+    EXPECT_LE(sample_collision(field, origin, down, 2000, 1).distance, 2000);
+    field.parts.push_back(UniformDensity{1});
+    EXPECT_LE(sample_collision(field, origin, down, 2000, 1).distance, 2000);
+    EXPECT_LE(sample_free_path(field, origin, down, 2000, 1).distance, 2000);
+}
+
 }  // namespace
 }  // namespace airlight

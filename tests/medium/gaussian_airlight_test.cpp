@@ -215,7 +215,10 @@ GaussianScene hard_scene(SweepDraw& draw) {
         blob.center = draw.chance(0.1) ? scene.ray.light : point();
         blob.scale = (draw.chance(0.7) ? draw.uniform(0.1, 3) : draw.decades(-5, 5)) / size;
         blob.amplitude = draw.decades(-3, 3) / size;
-        if (draw.chance(0.05)) blob.scale = std::min(draw.not_negative(false), 1e100);
+        // As narrow as the domain has them, 1e-12 of 40 sizes, or as wide as anything.
+        if (draw.chance(0.05)) {
+            blob.scale = std::min({draw.not_negative(false), 1e10 / size, 1e100});
+        }
         if (draw.chance(0.05)) blob.amplitude = std::min(draw.not_negative(false), 1e100);
         scene.medium.blobs.push_back(blob);
     }
@@ -348,6 +351,19 @@ TEST(GaussianCentroid, IsTheCentroidOfTheClippedGaussian) {
     EXPECT_NEAR(gaussian_centroid(2, 0, kInfinity), 0.5 / std::sqrt(kPi), 1e-15);
     EXPECT_GE(gaussian_centroid(1, -1e9, 1), 0);
     EXPECT_LE(gaussian_centroid(1e200, 1e200, 1), 1);
+}
+
+TEST(GaussianAirlight, BlobsNarrowerThanCoordinatesTellAreOutsideTheDomain) {
+    const AirlightRay ray = {glm::dvec3(0), glm::dvec3(0, 1, 1), glm::dvec3(0, 0, 1),
+                             std::numeric_limits<double>::infinity()};
+    const auto airlight_of = [&](double scale) {
+        return gaussian_airlight({0, {{glm::dvec3(0, 0, 5), scale, scale}}}, ray);
+    };
+    // The limit of a thin wall of fixed depth.
+    EXPECT_NEAR(airlight_of(1e10), 0.0022769, 1e-6);
+    EXPECT_NEAR(airlight_of(1e11), 0.0022769, 1e-6);
+    EXPECT_TRUE(std::isnan(airlight_of(1e14)));
+    EXPECT_TRUE(std::isnan(airlight_of(1e100)));
 }
 
 }  // namespace

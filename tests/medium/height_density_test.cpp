@@ -308,5 +308,22 @@ TEST(Sweep, LinearHeightDepthIsReciprocalAdditiveAndInverted) {
     });
 }
 
+// e^{n h} beyond any exponent; the values are ln(1 - q tau e^{nh}) / (-q) at 400 digits.
+TEST(HeightDensity, DistancesHoldWhereTheDensityLeavesEveryRange) {
+    const double rows[][5] = {{1, 1e5, -1, 1, 1e5},
+                              {1, 2e5, -1, 1, 2e5},
+                              {1e-3, 2e5, -0.5, 1, 399984.79779210402},
+                              {0.5, 1e6, -1e-300, 0.5, 9.9861244752594216e305}};
+    for (const auto& row : rows) {
+        const double distance = exponential_height_distance(row[0], row[1], row[2], row[3]);
+        EXPECT_NEAR(distance, row[4], 1e-4 * row[4]) << row[1];
+        // The rounding of the distance alone moves the depth by n u times it.
+        const double conditioning = row[3] * -row[2] * distance * 4e-16;
+        EXPECT_NEAR(exponential_height_depth(row[1], row[2], distance, row[3]) / row[0], 1,
+                    1e-12 + conditioning)
+            << row[1];
+    }
+}
+
 }  // namespace
 }  // namespace airlight

@@ -391,5 +391,14 @@ TEST(SlabMethod, EveryRungHoldsForAnyInput) {
         kSweepInputs / 5);
 }
 
+TEST(Slab, ThinFormOverflowsOnItsResultAlone) {
+    // Against 400 digits.
+    EXPECT_NEAR(slab_thin(1e300, 8.237425658376785e+112, 1e-300, 0, 7.392944760825106e-21,
+                          -0.999999999999999) /
+                    8.5313349047e-106,
+                1, 1e-9);
+    EXPECT_EQ(slab_thin(1, 2, 1, 0.5, 1, -1), std::numeric_limits<double>::infinity());
+}
+
 }  // namespace
 }  // namespace airlight
