@@ -74,6 +74,13 @@ double zonal_coefficient(int l, double lambda) {
     return std::sqrt((2.0 * l + 1) / (4 * kPi)) * lambda;
 }
 
+std::vector<double> zonal_coefficients(std::vector<double> lambda) {
+    for (std::size_t l = 0; l < lambda.size(); ++l) {
+        lambda[l] = zonal_coefficient(static_cast<int>(l), lambda[l]);
+    }
+    return lambda;
+}
+
 std::vector<double> zonal_eigenvalues(const PolarRule& rule, const std::vector<double>& values,
                                       int order) {
     assert(order >= 0 && values.size() == rule.weight.size());

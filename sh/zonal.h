@@ -21,6 +21,9 @@ double zonal_eigenvalue(int l, double g);
 /// g_l = sqrt((2l+1) / (4 pi)) lambda_l, the inverse of zonal_eigenvalue.
 double zonal_coefficient(int l, double lambda);
 
+/// All g_l of the eigenvalues lambda_l.
+std::vector<double> zonal_coefficients(std::vector<double> lambda);
+
 /// Eigenvalues lambda_l, l < order, of the zonal function with the given values at the rule's
 /// angles: lambda_l = 2 pi sum_i weight_i values_i P_l(cosine_i). With an n-point Gauss-Legendre
 /// rule it is exact for f of degree d in cos(gamma) as long as d + order <= 2n.
