@@ -10,56 +10,13 @@
 
 #include "sh/aligned.h"
 #include "sh/index.h"
-#include "sh/lanes-inl.h"
+#include "sh/matrix_lanes-inl.h"
 #include "sh/rotation.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace airlight {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-// Two vectors of lanes are turned together, so that a load of a matrix entry serves both.
-template <class D>
-HWY_INLINE std::size_t tile_width(D d) {
-    return 2 * hn::Lanes(d);
-}
-
-// kRows rows of a matrix times a tile.
-template <int kRows, class D, class Size, class T = hn::TFromD<D>>
-HWY_INLINE void multiply_rows(D d, const T* HWY_RESTRICT matrix, Size size, const T* HWY_RESTRICT x,
-                              T* HWY_RESTRICT y) {
-    const std::size_t lanes = hn::Lanes(d);
-    hn::Vec<D> low[kRows], high[kRows];
-    for (int r = 0; r < kRows; ++r) low[r] = high[r] = hn::Zero(d);
-    for (std::size_t k = 0; k < size; ++k) {
-        const auto x_low = hn::Load(d, x + 2 * k * lanes);
-        const auto x_high = hn::Load(d, x + (2 * k + 1) * lanes);
-        for (int r = 0; r < kRows; ++r) {
-            const auto entry = hn::Set(d, matrix[static_cast<std::size_t>(r) * size + k]);
-            low[r] = hn::MulAdd(entry, x_low, low[r]);
-            high[r] = hn::MulAdd(entry, x_high, high[r]);
-        }
-    }
-    for (std::size_t r = 0; r < kRows; ++r) {
-        hn::Store(low[r], d, y + 2 * r * lanes);
-        hn::Store(high[r], d, y + (2 * r + 1) * lanes);
-    }
-}
-
-// One degree. Single rows would wait for their own sums; an odd count leaves 3 or 3 + 2.
-template <class D, class Size, class T = hn::TFromD<D>>
-HWY_INLINE void rotate_band(D d, Size size, const T* HWY_RESTRICT matrix, const T* HWY_RESTRICT x,
-                            T* HWY_RESTRICT y) {
-    const std::size_t width = tile_width(d);
-    std::size_t row = 0;
-    for (; row + 5 < size; row += 4) {
-        multiply_rows<4>(d, matrix + row * size, size, x, y + row * width);
-    }
-    for (; row + 3 <= size; row += 3) {
-        multiply_rows<3>(d, matrix + row * size, size, x, y + row * width);
-    }
-    if (row + 2 == size) multiply_rows<2>(d, matrix + row * size, size, x, y + row * width);
-}
 
 template <class D, class T = hn::TFromD<D>>
 HWY_INLINE void rotate_tile(D d, int order, const T* HWY_RESTRICT matrix, const T* HWY_RESTRICT x,
@@ -71,7 +28,11 @@ HWY_INLINE void rotate_tile(D d, int order, const T* HWY_RESTRICT matrix, const 
         matrix += (size - 2) * (size - 2);
         x += (size - 2) * width;
         y += (size - 2) * width;
-        rotate_band(d, size, matrix, x, y);
+        multiply_matrix(d, size, size, matrix, x,
+                        [&](std::size_t row, hn::Vec<D> low, hn::Vec<D> high) HWY_ATTR {
+                            hn::Store(low, d, y + row * width);
+                            hn::Store(high, d, y + row * width + width / 2);
+                        });
     };
     // Sizes that the compiler knows save a tenth of the time where bands are short.
     if (order > 1) next(std::integral_constant<std::size_t, 3>());
@@ -85,28 +46,15 @@ HWY_INLINE void rotate_tile(D d, int order, const T* HWY_RESTRICT matrix, const 
 template <class T>
 HWY_INLINE void rotate_vectors(int order, const T* matrix, std::size_t count, const T* in, T* out) {
     const hn::ScalableTag<T> d;
-    const std::size_t size = sh_count(order), lanes = hn::Lanes(d), width = tile_width(d);
+    const std::size_t size = sh_count(order), width = tile_width(d);
     AlignedVector<T> tiles(2 * size * width);
     T* const x = tiles.data();
     T* const y = x + size * width;
     for (std::size_t v = 0; v < count; v += width, in += width * size, out += width * size) {
         const std::size_t here = std::min(width, count - v);
-        for (std::size_t first = 0; first < width; first += lanes) {
-            if (first + lanes <= here) {
-                to_lanes(d, size, in + first * size, x + first, width);
-            } else {
-                to_some_lanes(d, size, here > first ? here - first : 0, in + first * size,
-                              x + first, width);
-            }
-        }
+        to_tile(d, size, here, in, x);
         rotate_tile(d, order, matrix, x, y);
-        for (std::size_t first = 0; first < here; first += lanes) {
-            if (first + lanes <= here) {
-                from_lanes(d, size, y + first, width, out + first * size);
-            } else {
-                from_some_lanes(size, here - first, y + first, width, out + first * size);
-            }
-        }
+        from_tile(d, size, here, y, out);
     }
 }
 
