@@ -92,17 +92,17 @@ HWY_INLINE void for_each_m(int order, const F& f) {
 
 // Gauss-Legendre rows of an order, and half of a number: constants of a constant.
 template <int kOrder>
-constexpr auto nodes(std::integral_constant<int, kOrder>) {
+constexpr auto row_nodes(std::integral_constant<int, kOrder>) {
     return std::integral_constant<int, (3 * kOrder - 1) / 2>();
 }
-constexpr int nodes(int order) {
+constexpr int row_nodes(int order) {
     return (3 * order - 1) / 2;
 }
 template <int kNodes>
-constexpr auto half(std::integral_constant<int, kNodes>) {
+constexpr auto half_of(std::integral_constant<int, kNodes>) {
     return std::integral_constant<int, kNodes / 2>();
 }
-constexpr int half(int count) {
+constexpr int half_of(int count) {
     return count / 2;
 }
 
@@ -159,7 +159,7 @@ struct RowKernel {
                         T* HWY_RESTRICT scratch, T* out) const {
         constexpr int kLanes = static_cast<int>(hn::MaxLanes(d));
         const auto row_size = (2 * order - 1) * kLanes;
-        const auto all = nodes(order), pairs = half(all);
+        const auto all = row_nodes(order), pairs = half_of(all);
         const auto rows = all - pairs;
         T* const north_a = scratch;
         T* const south_a = north_a + row_size;

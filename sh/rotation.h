@@ -58,13 +58,13 @@ class ShRotation {
     ///
     /// Float matrices are the double ones rounded once; sums run in the type of the vectors.
     /// Largest error up to order 9, over the norm of the band: double 6e-16, float 1.7e-7
-    /// (measured). Cost per float vector of order 6, 64 at a time, one thread: 12 ns with AVX2, 11
-    /// with AVX-512, 29 with SSE4, where plain loops take 83.
+    /// (measured). Cost per float vector of order 6, 64 at a time, one thread: 13 ns with AVX2, 11
+    /// with AVX-512, 29 with SSE4, where plain loops take 92.
     void rotate(std::size_t count, const double* in, double* out) const;
     void rotate(std::size_t count, const float* in, float* out) const;
 
     /// The same for coefficients stored slot by slot: slot k of vector v at [k * stride + v],
-    /// stride >= count. rotate() transposes to this form and back; without that, 9 ns with AVX2.
+    /// stride >= count. rotate() transposes to this form and back; without that, 10 ns with AVX2.
     void rotate_planes(std::size_t count, std::size_t stride, const double* in, double* out) const;
     void rotate_planes(std::size_t count, std::size_t stride, const float* in, float* out) const;
 
