@@ -46,6 +46,8 @@ Command declare_info(CLI::App& program);
 Command declare_eval(CLI::App& program);
 Command declare_sheet(CLI::App& program);
 Command declare_ladder(CLI::App& program);
+Command declare_sh(CLI::App& program);
+Command declare_export(CLI::App& program);
 
 /// Writes to standard output. Throws Error(io) when it is closed, full or a broken pipe.
 void print(const std::string& text);

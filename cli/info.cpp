@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// airlight info: what an image file holds.
+// airlight info: what an image or a coefficient file holds.
 #include "envmap/info.h"
 
 #include <fmt/format.h>
@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "cli/command.h"
+#include "cli/info_sh.h"
 #include "core/atomic_file.h"
 #include "core/descriptor.h"
 #include "core/error.h"
@@ -23,6 +24,7 @@ struct FileFigures {
     ImageInfo header;
     std::optional<ImageStatistics> statistics;
     std::vector<std::string> notes;
+    std::optional<ShFile> light;  ///< of a coefficient file, which has none of the above
 };
 
 // A pipe can be read once, and the header is wanted before the pixels: both take a copy.
@@ -55,6 +57,10 @@ FileFigures look_into(const std::string& path, std::size_t max_memory) {
     FileFigures file;
     file.path = path;
     try {
+        if (is_json_file(readable)) {
+            file.light = read_sh_file(readable, max_memory);
+            return file;
+        }
         file.header = probe_image(readable);
         if (file.header.deep) {
             file.notes.push_back("a deep image: its pixels were not read");
@@ -85,6 +91,7 @@ bool is_ours(const Attribute& attribute) {
 }
 
 std::string to_lines(const FileFigures& file, bool all_attributes) {
+    if (file.light) return to_lines(file.path, *file.light);
     const ImageInfo& header = file.header;
     std::string text = fmt::format("{}\n  {} x {} pixels, {}, channels {}, {}", file.path,
                                    header.width, header.height, header.format,
@@ -129,6 +136,7 @@ nlohmann::ordered_json to_json(const Attribute& attribute) {
 }
 
 nlohmann::ordered_json to_json(const FileFigures& file) {
+    if (file.light) return to_json(file.path, *file.light);
     const ImageInfo& header = file.header;
     nlohmann::ordered_json json = {
         {"file", file.path},
@@ -189,12 +197,17 @@ void run_info(const std::vector<std::string>& paths, const CommonOptions& common
 }  // namespace
 
 Command declare_info(CLI::App& program) {
-    Command command = declare_command(program, "info", "FILE...", "Tell what an image file holds",
-                                      "  airlight info room.exr foggy.exr\n"
-                                      "  airlight info room.exr --json\n"
-                                      "With -v, all attributes of the file are listed.");
+    Command command =
+        declare_command(program, "info", "FILE...", "Tell what an image or coefficient file holds",
+                        "  airlight info room.exr foggy.exr\n"
+                        "  airlight info room.exr --json\n"
+                        "With -v, all attributes of the file are listed.");
     const auto paths = std::make_shared<std::vector<std::string>>();
-    command.app->add_option("files", *paths, "Images (.exr, .hdr, .pfm, .tif; - is standard input)")
+    command.app
+        ->add_option(
+            "files", *paths,
+            "Images (.exr, .hdr, .pfm, .tif) or coefficient files of airlight sh (- is standard "
+            "input)")
         ->option_text(" ");
     add_json_flag(command, "Print the figures as JSON");
     add_max_memory_flag(command);

@@ -71,4 +71,15 @@ std::vector<double> psf_eigenvalues_scaled(double optical_thickness, const Phase
     return zonal_eigenvalues(nodes, values, order);
 }
 
+std::vector<double> fog_eigenvalues(double optical_thickness, double albedo,
+                                    const PhaseFunction& phase, int order) {
+    std::vector<double> lambda = psf_eigenvalues_scaled(optical_thickness, phase, order);
+    const double direct = std::exp(-optical_thickness);
+    for (double& value : lambda) {
+        // T e^-T alone would be 0 inf for the largest T.
+        value = direct == 0 ? 0 : direct * (1 + albedo * optical_thickness * value);
+    }
+    return lambda;
+}
+
 }  // namespace airlight

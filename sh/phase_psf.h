@@ -22,4 +22,11 @@ namespace airlight {
 std::vector<double> psf_eigenvalues_scaled(double optical_thickness, const PhaseFunction& phase,
                                            int order);
 
+/// What fog of the optical thickness T and the given single-scattering albedo multiplies degree l
+/// of a map's light by: e^-T, the direct part, plus albedo T e^-T times psf_eigenvalues_scaled.
+/// The foggy map of envmap/fog.h has these coefficients. All are positive; T = 0 gives ones, and
+/// from T = 745 on they are 0 by underflow. Throws as above.
+std::vector<double> fog_eigenvalues(double optical_thickness, double albedo,
+                                    const PhaseFunction& phase, int order);
+
 }  // namespace airlight

@@ -14,7 +14,7 @@ TEST(Usage, HelpAndVersionGoToStandardOutput) {
     const Outcome help = run({"--help"});
     EXPECT_EQ(help.status, 0);
     EXPECT_EQ(help.err, "");
-    for (const std::string command : {"fog", "info", "eval", "sheet"}) {
+    for (const std::string command : {"fog", "info", "eval", "sheet", "sh", "export"}) {
         EXPECT_NE(help.out.find("\n  " + command + " "), std::string::npos) << help.out;
         const Outcome own = run({command, "--help"});
         EXPECT_EQ(own.status, 0);

@@ -63,5 +63,20 @@ TEST(PhasePsfEigenvalues, RefuseWhatIsNoThickness) {
     }
 }
 
+TEST(FogEigenvalues, AreDirectAndScatteredLightTogether) {
+    const PhaseFunction phase = PhaseFunction::henyey_greenstein(0.4);
+    const std::vector<double> scaled = psf_eigenvalues_scaled(1.5, phase, 8);
+    const std::vector<double> lambda = fog_eigenvalues(1.5, 0.7, phase, 8);
+    for (std::size_t l = 0; l < 8; ++l) {
+        EXPECT_DOUBLE_EQ(lambda[l], std::exp(-1.5) + 0.7 * 1.5 * std::exp(-1.5) * scaled[l]);
+    }
+    EXPECT_EQ(fog_eigenvalues(0, 1, phase, 5), std::vector<double>(5, 1.0));
+    EXPECT_EQ(fog_eigenvalues(2, 0, phase, 5), std::vector<double>(5, std::exp(-2)));
+    for (const double thick : {800.0, 1e300}) {
+        EXPECT_EQ(fog_eigenvalues(thick, 1, PhaseFunction(), 3), std::vector<double>(3, 0.0));
+    }
+    EXPECT_THROW(fog_eigenvalues(-1, 1, phase, 3), Error);
+}
+
 }  // namespace
 }  // namespace airlight

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// airlight export: what airlight computed, in the formats of other programs.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cctype>
+#include <filesystem>
+#include <memory>
+
+#include "cli/command.h"
+#include "cli/engine_flags.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "sh/sh_file.h"
+
+namespace airlight {
+namespace {
+
+struct ExportRequest {
+    std::vector<std::string> inputs;
+    std::string output;
+    EngineFlags engine;
+};
+
+bool is_prt(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension == ".prt";
+}
+
+void check(const ExportRequest& request, const CommonOptions& common) {
+    if (request.inputs.size() != 1) {
+        throw Error(ErrorCode::usage, request.inputs.empty()
+                                          ? "an input is missing (see airlight export --help)"
+                                          : "takes one input, not several");
+    }
+    if (request.output.empty()) {
+        throw Error(ErrorCode::usage, "the output is missing: give -o FILE");
+    }
+    if (is_prt(request.inputs[0])) {
+        throw Error(ErrorCode::usage,
+                    "transfer (.prt) cannot be exported by this version, only coefficient files of "
+                    "airlight sh",
+                    request.inputs[0]);
+    }
+    if (!request.engine.format) {
+        throw Error(ErrorCode::usage,
+                    "the format is missing: give --format filament, three, unity, unreal or gltf");
+    }
+    if (request.output != "-") check_target(request.output, common.force);
+}
+
+void run_export(const ExportRequest& request, const CommonOptions& common) {
+    check(request, common);
+    const std::string& input = request.inputs[0];
+    const ShFile light = read_sh_file(input, common.max_memory);
+    const std::string name = input == "-" ? "standard input" : input;
+    if (light.order > 3) {
+        spdlog::info("{}: engines take three of its {} degrees", name, light.order);
+    }
+    std::string text;
+    try {
+        text = engine_text(request.engine, light.order, light.coefficients);
+    } catch (const Error& error) {
+        throw Error(error.code(), error.what(), name);
+    }
+    if (request.output == "-") return print(text);
+    write_file_atomically(request.output, text, common.force);
+}
+
+}  // namespace
+
+Command declare_export(CLI::App& program) {
+    Command command = declare_command(
+        program, "export", "IN -o OUT",
+        "Turn a coefficient file of airlight sh into what engines read",
+        "  airlight sh room.exr -o room.json\n"
+        "  airlight export room.json -o sh.txt --format filament\n"
+        "  airlight export room.json -o room.gltf --format gltf\n"
+        "Engines take three degrees: windows should be chosen with airlight sh --order 3.");
+    const auto request = std::make_shared<ExportRequest>();
+    command.app
+        ->add_option("files", request->inputs, "A coefficient file (.json; - is standard input)")
+        ->option_text(" ");
+    add_flag(command, "-o,--output", "FILE", "What to write (- is standard output)",
+             [request](const std::string& text) { request->output = text; });
+    add_flag(command, "--format", "filament|three|unity|unreal|gltf", kEngineFormatHelp,
+             [request](const std::string& text) {
+                 request->engine.format = parse_engine(text, "--format", false);
+             });
+    add_turn_flag(command, request->engine);
+    add_force_flag(command);
+    add_max_memory_flag(command);
+    command.run = [request, common = command.common] { run_export(*request, *common); };
+    return command;
+}
+
+}  // namespace airlight

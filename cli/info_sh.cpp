@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/info_sh.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/constants.h"
+#include "sh/index.h"
+
+namespace airlight {
+namespace {
+
+constexpr std::size_t kChannels = 3;
+
+/// The part of each channel's square that degree l has, from its coefficients.
+double energy(const ShFile& light, std::size_t channel, int l) {
+    const double* c = light.coefficients.data() + channel * sh_count(light.order);
+    double sum = 0;
+    for (int m = -l; m <= l; ++m) sum += c[sh_index(l, m)] * c[sh_index(l, m)];
+    return sum;
+}
+
+std::array<double, kChannels> mean_of(const ShFile& light) {
+    std::array<double, kChannels> mean;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        mean[c] = light.coefficients[c * sh_count(light.order)] / std::sqrt(4 * kPi);
+    }
+    return mean;
+}
+
+}  // namespace
+
+std::string to_lines(const std::string& path, const ShFile& light) {
+    std::string text =
+        fmt::format("{}\n  spherical-harmonic coefficients of radiance, order {}, channels R G B\n",
+                    path, light.order);
+    const auto row = [&](const std::string& name, auto value) {
+        text += fmt::format("  {:<26}", name);
+        for (std::size_t c = 0; c < kChannels; ++c) text += fmt::format(" {:>12.6g}", value(c));
+        text += "\n";
+    };
+    row("mean radiance", [&](std::size_t c) { return mean_of(light)[c]; });
+    for (int l = 1; l < std::min(light.order, 4); ++l) {
+        row(fmt::format("rms of degree {}", l),
+            [&](std::size_t c) { return std::sqrt(energy(light, c, l) / (4 * kPi)); });
+    }
+    if (light.map) {
+        text +=
+            fmt::format("  {:<26} {} x {} pixels\n", "map", light.map->width, light.map->height);
+    }
+    if (light.fog) {
+        text += fmt::format("  {:<26} optical thickness {}, albedo {}, {}\n", "fog",
+                            fmt::join(light.fog->optical_thickness, ","),
+                            fmt::join(light.fog->albedo, ","), light.fog->phase);
+    }
+    if (light.window) {
+        text += fmt::format("  {:<26} {}", "window", light.window->name);
+        if (light.window->name == "auto") {
+            text += fmt::format(", least {}, strength {:.6g}", light.window->least,
+                                light.window->strength);
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+nlohmann::ordered_json to_json(const std::string& path, const ShFile& light) {
+    nlohmann::ordered_json json = {{"file", path},
+                                   {"format", "airlight_sh"},
+                                   {"order", light.order},
+                                   {"mean", mean_of(light)}};
+    if (light.map) json["map"] = {{"width", light.map->width}, {"height", light.map->height}};
+    if (light.fog) {
+        json["fog"] = {{"optical_thickness", light.fog->optical_thickness},
+                       {"albedo", light.fog->albedo},
+                       {"phase", light.fog->phase}};
+    }
+    if (light.window) {
+        json["window"] = {{"name", light.window->name}};
+        if (light.window->name == "auto") {
+            json["window"]["least"] = light.window->least;
+            json["window"]["strength"] = light.window->strength;
+        }
+    }
+    return json;
+}
+
+}  // namespace airlight

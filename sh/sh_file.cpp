@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sh/sh_file.h"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cmath>
+
+#include "core/atomic_file.h"
+#include "sh/index.h"
+#include "sh/sh_file_text.h"
+
+namespace airlight {
+namespace {
+
+std::string list(const std::vector<double>& values) {
+    return fmt::format("[{}]", fmt::join(values, ", "));
+}
+
+// One degree to a line.
+std::string rows_of(const ShFile& file, std::size_t channel) {
+    const std::size_t count = sh_count(file.order);
+    std::string text;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double value = file.coefficients[channel * count + i];
+        assert(std::isfinite(value));
+        const ShDegree at = sh_degree(i);
+        text += at.m == -at.l ? (i == 0 ? "\n     " : ",\n     ") : ", ";
+        // JSON's -0 is an integer to many readers, which loses the sign.
+        text += value == 0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string sh_file_text(const ShFile& file) {
+    assert(file.coefficients.size() == detail::kShChannels.size() * sh_count(file.order));
+    std::string text = fmt::format(
+        "{{\n  \"airlight_sh\": {},\n  \"quantity\": \"{}\",\n  \"unit\": \"{}\",\n"
+        "  \"convention\": \"{}\",\n  \"frame\": \"{}\",\n  \"channels\": [\"R\", \"G\", \"B\"],\n"
+        "  \"order\": {}",
+        detail::kShFileVersion, detail::kShQuantity, detail::kShUnit, detail::kShConvention,
+        detail::kShFrame, file.order);
+    if (file.map) {
+        text += fmt::format(",\n  \"map\": {{\"width\": {}, \"height\": {}}}", file.map->width,
+                            file.map->height);
+    }
+    if (file.fog) {
+        text += fmt::format(
+            ",\n  \"fog\": {{\"optical_thickness\": {}, \"albedo\": {}, \"phase\": \"{}\"}}",
+            list(file.fog->optical_thickness), list(file.fog->albedo), file.fog->phase);
+    }
+    if (file.window) {
+        text += fmt::format(",\n  \"window\": {{\"name\": \"{}\"", file.window->name);
+        if (file.window->name == "auto") {
+            text += fmt::format(", \"least\": {}, \"strength\": {}", file.window->least,
+                                file.window->strength);
+        }
+        text += "}";
+    }
+    text += ",\n  \"coefficients\": [";
+    for (std::size_t c = 0; c < detail::kShChannels.size(); ++c) {
+        text += (c == 0 ? "\n    [" : ",\n    [") + rows_of(file, c) + "]";
+    }
+    return text + "\n  ]\n}\n";
+}
+
+void write_sh_file(const std::string& path, const ShFile& file, bool force) {
+    write_file_atomically(path, sh_file_text(file), force);
+}
+
+}  // namespace airlight
