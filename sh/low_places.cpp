@@ -77,7 +77,7 @@ LowPlace LowPlaces::lowest(const double* coefficients) const {
         for (int j = 0; j < rows_; ++j) {
             for (int i = 0; i < columns_; ++i) {
                 const double value = values[at(j, i)];
-                if (value > reach || !is_lowest_around(values, j, i)) continue;
+                if (value > reach || !is_low_around(values, j, i)) continue;
                 const LowPlace place = descend(c, at(j, i), value);
                 if (place.value < best.value) best = place;
             }
@@ -98,7 +98,7 @@ std::vector<LowPlace> LowPlaces::below(const double* coefficients, double bound)
     for (int j = 0; j < rows_; ++j) {
         for (int i = 0; i < columns_; ++i) {
             const double value = values[at(j, i)];
-            if (value > reach || !is_lowest_around(values, j, i)) continue;
+            if (value > reach || !is_low_around(values, j, i)) continue;
             LowPlace place = descend(c, at(j, i), value);
             place.value = std::ldexp(place.value, own.exponent);
             if (place.value < bound) places.push_back(place);
@@ -111,15 +111,14 @@ std::size_t LowPlaces::at(int j, int i) const {
     return static_cast<std::size_t>(j) * columns_ + (i + columns_) % columns_;
 }
 
-bool LowPlaces::is_lowest_around(const std::vector<double>& values, int j, int i) const {
+bool LowPlaces::is_low_around(const std::vector<double>& values, int j, int i) const {
     const double value = values[at(j, i)];
+    int lower = 0;
     for (int dj = -1; dj <= 1; ++dj) {
         if (j + dj < 0 || j + dj >= rows_) continue;
-        for (int di = -1; di <= 1; ++di) {
-            if (values[at(j + dj, i + di)] < value) return false;
-        }
+        for (int di = -1; di <= 1; ++di) lower += values[at(j + dj, i + di)] < value;
     }
-    return true;
+    return lower <= 2;
 }
 
 double LowPlaces::value_at(const double* coefficients, const Vector& direction,

@@ -14,7 +14,7 @@ struct LowPlace {
 
 /// The lowest places on the sphere of functions sum c_lm Y_lm, l < order, order >= 1.
 ///
-/// Samples lie pi / (4 order + 2) apart; from those that are lowest among their neighbours the
+/// Samples lie pi / (4 order + 2) apart; from those with at most two lower neighbours the
 /// function is followed downhill until its steps are 1e-5 of that. Along a great circle it is a
 /// trigonometric polynomial of degree order - 1, so by Szego's inequality it rises from its least
 /// value no faster than (1 - cos) of that many times the way: at the sample nearest to it, by at
@@ -39,7 +39,7 @@ class LowPlaces {
   private:
     std::vector<double> samples(const double* coefficients) const;
     std::size_t at(int j, int i) const;
-    bool is_lowest_around(const std::vector<double>& values, int j, int i) const;
+    bool is_low_around(const std::vector<double>& values, int j, int i) const;
     double value_at(const double* coefficients, const std::array<double, 3>& direction,
                     std::vector<double>& basis) const;
     LowPlace descend(const double* coefficients, std::size_t sample, double value) const;
