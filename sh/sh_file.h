@@ -53,12 +53,13 @@ void write_sh_file(const std::string& path, const ShFile& file, bool force = fal
 /// Reads one; "-" is standard input. What sh_file_text wrote comes back in every bit.
 ///
 /// Throws Error naming the file, the field, its value and what it may be:
+///   usage   standard input is a terminal;
 ///   io      it is missing, a directory, or cannot be read;
 ///   data    it is empty, cut off or no JSON, of another version, quantity or convention; a field
 ///   is
 ///           missing, unknown or given twice; the order is not an integer in
 ///           [1, kLargestShFileOrder]; a channel does not hold order^2 finite numbers;
-///   memory  it, or what is made of it on the way (24 times its size), exceeds max_memory.
+///   memory  it, or what is made of it on the way (32 times its size), exceeds max_memory.
 ShFile read_sh_file(const std::string& path, std::size_t max_memory = kDefaultMaxMemory);
 
 /// The same for a file's content; `name` is what messages call it.

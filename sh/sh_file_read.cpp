@@ -24,7 +24,7 @@ namespace {
 using Json = nlohmann::json;
 
 // Bytes of memory that parsing takes per byte of the file, at most.
-constexpr std::size_t kMemoryPerByte = 24;
+constexpr std::size_t kMemoryPerByte = 32;
 // The file's deepest value: a coefficient in its channel's array in "coefficients".
 constexpr int kDeepest = 3;
 constexpr std::size_t kLongestQuote = 40;
@@ -36,6 +36,12 @@ std::string shorten(std::string text) {
     while (!text.empty() && (text.back() & 0xC0) == 0x80) text.pop_back();
     if (!text.empty() && (text.back() & 0x80) != 0) text.pop_back();
     return text + "...";
+}
+
+// A field's name as JSON writes it, without the quotation marks, so that it stays on one line.
+std::string escape(const std::string& key) {
+    const std::string text = Json(key).dump();
+    return shorten(text.substr(1, text.size() - 2));
 }
 
 std::string quote(const Json& value) {
@@ -63,7 +69,7 @@ class Fields {
         for (const auto& item : object_.items()) {
             if (std::find(keys.begin(), keys.end(), item.key()) == keys.end()) {
                 throw Error(ErrorCode::data,
-                            "the field " + prefix_ + shorten(item.key()) + " is unknown", file_);
+                            "the field " + prefix_ + escape(item.key()) + " is unknown", file_);
             }
         }
     }
@@ -149,7 +155,7 @@ Json parse(const std::string& text, const std::string& name) {
         if (event == Event::object_end) keys.pop_back();
         if (event == Event::key && !keys.back().insert(value.get<std::string>()).second) {
             throw Error(ErrorCode::data,
-                        "the field " + shorten(value.get<std::string>()) + " is given twice", name);
+                        "the field " + escape(value.get<std::string>()) + " is given twice", name);
         }
         return true;
     };
@@ -286,6 +292,9 @@ ShFile parse_sh_file(const std::string& text, const std::string& name) {
 
 ShFile read_sh_file(const std::string& path, std::size_t max_memory) {
     const std::string name = path == "-" ? "standard input" : path;
+    if (path == "-" && isatty(STDIN_FILENO) == 1) {
+        throw Error(ErrorCode::usage, "is a terminal, and a coefficient file was expected", name);
+    }
     const Descriptor file(path == "-" ? dup(STDIN_FILENO)
                                       : open(path.c_str(), O_RDONLY | O_CLOEXEC));
     struct stat status = {};

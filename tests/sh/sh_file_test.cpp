@@ -148,6 +148,7 @@ TEST_F(BadShFile, HasAFieldThatIsMissingUnknownOrThereTwice) {
     refuse("\"albedo\"", "\"albino\"", "the field fog.albino is unknown");
     refuse("\"albedo\": [0.5], ", "", "the field fog.albedo is missing");
     refuse("\"height\": 2", "\"width\": 2", "the field width is given twice");
+    refuse("\"unit\"", "\"a\\nb\"", "the field a\\nb is unknown");
     refuse("\"unit\"", "\"" + std::string(500, 'x') + "\"",
            "the field " + std::string(40, 'x') + "... is unknown");
 }
@@ -234,6 +235,55 @@ TEST_F(BadShFile, CannotBeReadOrIsTooLarge) {
     refuse_file(directory / "a.json", 1 << 18, ErrorCode::memory, "--max-memory");
     EXPECT_TRUE(is_json_file(directory / "a.json"));
     EXPECT_FALSE(is_json_file(directory / "none.json"));
+}
+
+TEST_F(BadShFile, IsReadOrRefusedWhateverIsDamaged) {
+    std::mt19937 random(3);
+    const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };
+    const char* pieces[] = {"[", "]", "{",     "}",   "\"",   ",",
+                            ":", "-", "1e999", "NaN", "null", "\xff"};
+    int taken = 0;
+    for (int round = 0; round < 5000; ++round) {
+        std::string text = text_;
+        for (std::size_t change = 1 + below(3); change > 0 && !text.empty(); --change) {
+            const std::size_t at = below(text.size());
+            switch (below(5)) {
+                case 0:
+                    text[at] = static_cast<char>(random());
+                    break;
+                case 1:
+                    text.erase(at, 1 + below(8));
+                    break;
+                case 2:
+                    text.insert(at, pieces[below(std::size(pieces))]);
+                    break;
+                case 3:
+                    text.insert(at, text.substr(below(text.size()), 1 + below(30)));
+                    break;
+                default:
+                    text[at] = static_cast<char>('0' + below(10));
+                    break;
+            }
+        }
+        try {
+            const ShFile file = parse_sh_file(text, "a.json");
+            ++taken;
+            ASSERT_EQ(file.coefficients.size(), 3u * file.order * file.order);
+            for (const double value : file.coefficients) ASSERT_TRUE(std::isfinite(value));
+        } catch (const Error& error) {
+            ASSERT_EQ(error.code(), ErrorCode::data);
+            ASSERT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+        }
+    }
+    EXPECT_GT(taken, 0);
+}
+
+TEST(ShFiles, DocumentationShowsOne) {
+    const std::string page = read_bytes(AIRLIGHT_REFERENCE_DIR "/../../docs/SH_FILES.md");
+    const std::string fence = "```json\n";
+    const std::size_t begin = page.find(fence) + fence.size();
+    const std::string example = page.substr(begin, page.find("```", begin) - begin);
+    EXPECT_EQ(sh_file_text(parse_sh_file(example, "SH_FILES.md")), example);
 }
 
 }  // namespace
