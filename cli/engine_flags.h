@@ -8,6 +8,7 @@
 
 #include "cli/command.h"
 #include "envmap/engine_light.h"
+#include "sh/sh_file.h"
 
 namespace airlight {
 
@@ -29,6 +30,9 @@ std::optional<EngineFormat> parse_engine(const std::string& text, const std::str
 
 /// --turn.
 void add_turn_flag(const Command& command, EngineFlags& flags);
+
+/// Warns that a sun which was taken out is no part of what is written, and says where it is there.
+void warn_of_sun(const EngineFlags& flags, const ShFileSun& sun, const std::string& output);
 
 /// engine_text of the light turned as asked; flags.format must be there.
 std::string engine_text(const EngineFlags& flags, int order,

@@ -64,6 +64,7 @@ void run_export(const ExportRequest& request, const CommonOptions& common) {
     } catch (const Error& error) {
         throw Error(error.code(), error.what(), name);
     }
+    if (light.sun) warn_of_sun(request.engine, *light.sun, request.output);
     if (request.output == "-") return print(text);
     write_file_atomically(request.output, text, common.force);
 }

@@ -55,6 +55,14 @@ std::string to_lines(const std::string& path, const ShFile& light) {
                             fmt::join(light.fog->optical_thickness, ","),
                             fmt::join(light.fog->albedo, ","), light.fog->phase);
     }
+    if (light.sun) {
+        const ShFileSun& sun = *light.sun;
+        text += fmt::format(
+            "  {:<26} direction ({:.4f}, {:.4f}, {:.4f}), irradiance {:.6g}, angular radius {:.4g} "
+            "degrees\n",
+            "sun, apart", sun.direction[0], sun.direction[1], sun.direction[2],
+            fmt::join(sun.irradiance, ","), sun.angular_radius * 180 / kPi);
+    }
     if (light.window) {
         text += fmt::format("  {:<26} {}", "window", light.window->name);
         if (light.window->name == "auto") {
@@ -76,6 +84,11 @@ nlohmann::ordered_json to_json(const std::string& path, const ShFile& light) {
         json["fog"] = {{"optical_thickness", light.fog->optical_thickness},
                        {"albedo", light.fog->albedo},
                        {"phase", light.fog->phase}};
+    }
+    if (light.sun) {
+        json["sun"] = {{"direction", light.sun->direction},
+                       {"irradiance", light.sun->irradiance},
+                       {"angular_radius", light.sun->angular_radius}};
     }
     if (light.window) {
         json["window"] = {{"name", light.window->name}};

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -14,9 +16,11 @@
 #include "core/error.h"
 #include "envmap/engine_light.h"
 #include "envmap/io.h"
+#include "envmap/sun.h"
 #include "sh/index.h"
 #include "sh/phase_psf.h"
 #include "sh/project.h"
+#include "sh/rotation.h"
 #include "sh/sh_file.h"
 #include "sh/window.h"
 #include "sh/zonal.h"
@@ -37,6 +41,7 @@ struct ShRequest {
     std::optional<std::vector<double>> fog;
     std::vector<double> albedo = {1.0};
     PhaseFunction phase;
+    bool extract_sun = false;
     Window window = Window::none;
     double least = 0;
     bool least_given = false, medium_given = false;
@@ -83,15 +88,37 @@ void check(const ShRequest& request, const CommonOptions& common) {
     if (request.output != "-") check_target(request.output, common.force);
 }
 
+void take_sun(Image& map, ShFile& light, const std::string& input_name) {
+    const Sun sun = extract_sun(map);
+    if (sun.verdict != SunVerdict::found) {
+        spdlog::warn("{}: no sun was taken out: {}", input_name, to_text(sun.verdict));
+        return;
+    }
+    light.sun = ShFileSun{sun.direction, {}, sun.angular_radius};
+    std::copy(sun.irradiance.begin(), sun.irradiance.end(), light.sun->irradiance.begin());
+}
+
+/// The sun's light that reaches the viewer unscattered stays apart; what fog scatters joins the
+/// map.
 void add_fog(const ShRequest& request, ShFile& light) {
     const std::size_t count = sh_count(light.order);
     for (std::size_t c = 0; c < kChannels; ++c) {
         const auto channel = [c](const std::vector<double>& values) {
             return values.size() == 1 ? values[0] : values[c];
         };
-        zonal_convolve(fog_eigenvalues(channel(*request.fog), channel(request.albedo),
-                                       request.phase, light.order),
-                       1, light.coefficients.data() + c * count);
+        const double thickness = channel(*request.fog);
+        std::vector<double> lambda =
+            fog_eigenvalues(thickness, channel(request.albedo), request.phase, light.order);
+        double* coefficients = light.coefficients.data() + c * count;
+        zonal_convolve(lambda, 1, coefficients);
+        if (!light.sun) continue;
+        for (double& value : lambda)
+            value = (value - std::exp(-thickness)) * light.sun->irradiance[c];
+        const auto [x, y, z] = light.sun->direction;
+        std::vector<double> glow(count);
+        rotate_zonal(light.order, zonal_coefficients(lambda).data(), {x, y, z}, glow.data());
+        for (std::size_t i = 0; i < count; ++i) coefficients[i] += glow[i];
+        light.sun->irradiance[c] *= std::exp(-thickness);
     }
     light.fog = ShFileFog{*request.fog, request.albedo, phase_name(request.phase)};
 }
@@ -127,7 +154,7 @@ void run_sh(ShRequest request, const CommonOptions& common) {
     const std::string& input = request.inputs[0];
     const std::string input_name = input == "-" ? "standard input" : input;
     ReadReport report;
-    const Image map = read_image(input, request.read, &report);
+    Image map = read_image(input, request.read, &report);
     for (const std::string& note : report.notes) spdlog::warn("{}: {}", input_name, note);
     if (report.negative > 0) {
         spdlog::warn("{}: {} negative values down to {:.6g}", input_name, report.negative,
@@ -136,6 +163,7 @@ void run_sh(ShRequest request, const CommonOptions& common) {
     ShFile light;
     light.map = ShFileMap{map.width, map.height};
     light.order = order_of(request);
+    if (request.extract_sun) take_sun(map, light, input_name);
     light.coefficients =
         project_latlong(map.pixels.data(), map.height, map.width, map.channels, light.order);
     std::string text;
@@ -146,6 +174,9 @@ void run_sh(ShRequest request, const CommonOptions& common) {
                                      : sh_file_text(light);
     } catch (const Error& error) {
         throw Error(error.code(), error.what(), input_name);
+    }
+    if (light.sun && request.engine.format) {
+        warn_of_sun(request.engine, *light.sun, request.output);
     }
     if (request.output == "-") return print(text);
     write_file_atomically(request.output, text, common.force);
@@ -172,6 +203,12 @@ void add_light_flags(const Command& command, ShRequest& request) {
              [&](const std::string& text) {
                  request.phase = parse_phase(text, "--phase");
                  request.medium_given = true;
+             });
+    add_flag(command, "--sun", "keep|extract",
+             "extract: the sun becomes a directional light of its own, which json holds beside the "
+             "coefficients and the formats of engines leave to a warning (default: keep)",
+             [&](const std::string& text) {
+                 request.extract_sun = parse_choice(text, "--sun", {"keep", "extract"}) == 1;
              });
     add_flag(command, "--window", "none|hann|lanczos|auto",
              "Window against ringing; auto is the weakest that keeps --least (default: none)",

@@ -121,6 +121,19 @@ std::vector<double> turned_about_up(int order, const std::vector<double>& coeffi
     return turned;
 }
 
+std::array<double, 3> engine_direction(EngineFormat format,
+                                       const std::array<double, 3>& direction) {
+    const auto [x, y, z] = direction;
+    switch (format) {
+        case EngineFormat::unity:
+            return {z, y, x};
+        case EngineFormat::unreal:
+            return {x, z, y};
+        default:
+            return direction;
+    }
+}
+
 std::array<std::array<double, 4>, 7> unreal_sky_vectors(const EngineSh& light) {
     EngineSh h = light;
     for (std::size_t i = 0; i < kSlots; ++i) {

@@ -65,6 +65,9 @@ std::vector<double> turned_about_up(int order, const std::vector<double>& coeffi
 
 enum class EngineFormat { filament, three, unity, unreal, gltf };
 
+/// A direction of the world frame in the axes of an engine, those of its converter above.
+std::array<double, 3> engine_direction(EngineFormat format, const std::array<double, 3>& direction);
+
 /// What is written for an engine: nine lines for Filament, else JSON.
 ///
 ///   three   the object that LightProbe.fromJSON takes: intensity 1 and sh, 27 numbers

@@ -13,7 +13,8 @@
 namespace airlight {
 namespace {
 
-std::string list(const std::vector<double>& values) {
+template <class Values>
+std::string list(const Values& values) {
     return fmt::format("[{}]", fmt::join(values, ", "));
 }
 
@@ -58,6 +59,11 @@ std::string sh_file_text(const ShFile& file) {
                                 file.window->strength);
         }
         text += "}";
+    }
+    if (file.sun) {
+        text += fmt::format(
+            ",\n  \"sun\": {{\"direction\": {}, \"irradiance\": {}, \"angular_radius\": {}}}",
+            list(file.sun->direction), list(file.sun->irradiance), file.sun->angular_radius);
     }
     text += ",\n  \"coefficients\": [";
     for (std::size_t c = 0; c < detail::kShChannels.size(); ++c) {

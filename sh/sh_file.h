@@ -34,6 +34,13 @@ struct ShFileWindow {
     double least = 0, strength = 0;
 };
 
+/// The sun that was taken out of the map and is no part of the coefficients: a directional light.
+struct ShFileSun {
+    std::array<double, 3> direction = {};   ///< towards it, unit, world frame
+    std::array<double, 3> irradiance = {};  ///< R, G, B on a surface that faces it, through the fog
+    double angular_radius = 0;              ///< of a disc that casts the same penumbrae, radians
+};
+
 /// Radiance as coefficients in the world frame of sh/basis.h, and how they came to be.
 struct ShFile {
     int order = 0;
@@ -41,6 +48,7 @@ struct ShFile {
     std::optional<ShFileMap> map;
     std::optional<ShFileFog> fog;
     std::optional<ShFileWindow> window;
+    std::optional<ShFileSun> sun;
 };
 
 /// The file's text: version 1, numbers in the fewest digits that give the same doubles back. Equal

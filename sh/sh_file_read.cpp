@@ -12,6 +12,7 @@
 #include <set>
 
 #include "core/atomic_file.h"
+#include "core/constants.h"
 #include "core/descriptor.h"
 #include "core/error.h"
 #include "sh/index.h"
@@ -28,6 +29,7 @@ constexpr std::size_t kMemoryPerByte = 32;
 // The file's deepest value: a coefficient in its channel's array in "coefficients".
 constexpr int kDeepest = 3;
 constexpr std::size_t kLongestQuote = 40;
+constexpr double kUnitTolerance = 1e-6;
 
 std::string shorten(std::string text) {
     if (text.size() <= kLongestQuote) return text;
@@ -231,6 +233,26 @@ ShFileWindow window_of(const Fields& fields) {
     return window;
 }
 
+std::array<double, 3> three_of(const Fields& fields, const char* key, double low, double high) {
+    const std::vector<double> values = fields.channels(key, low, high);
+    if (values.size() != 3) fields.refuse(key, "holds one number, not 3");
+    return {values[0], values[1], values[2]};
+}
+
+ShFileSun sun_of(const Fields& fields) {
+    fields.know({"direction", "irradiance", "angular_radius"});
+    ShFileSun sun;
+    sun.direction = three_of(fields, "direction", -1, 1);
+    const auto [x, y, z] = sun.direction;
+    const double length = std::sqrt(x * x + y * y + z * z);
+    if (std::abs(length - 1) > kUnitTolerance) {
+        fields.refuse("direction", fmt::format("has the length {}, not 1", length));
+    }
+    sun.irradiance = three_of(fields, "irradiance", 0, kAny);
+    sun.angular_radius = fields.number("angular_radius", fields.at("angular_radius"), 0, kPi / 2);
+    return sun;
+}
+
 std::string read_all(int descriptor, std::size_t limit, const std::string& name) {
     std::string text;
     std::vector<char> block(std::size_t{1} << 16);
@@ -267,7 +289,7 @@ ShFile parse_sh_file(const std::string& text, const std::string& name) {
                             fmt::format("version {}, the only one known", detail::kShFileVersion));
     }
     fields.know({"airlight_sh", "quantity", "unit", "convention", "frame", "channels", "order",
-                 "map", "fog", "window", "coefficients"});
+                 "map", "fog", "window", "sun", "coefficients"});
     fields.expect("quantity", detail::kShQuantity);
     fields.expect("unit", detail::kShUnit);
     fields.expect("convention", detail::kShConvention);
@@ -287,6 +309,7 @@ ShFile parse_sh_file(const std::string& text, const std::string& name) {
     }
     if (fields.find("fog") != nullptr) file.fog = fog_of(fields.inner("fog"));
     if (fields.find("window") != nullptr) file.window = window_of(fields.inner("window"));
+    if (fields.find("sun") != nullptr) file.sun = sun_of(fields.inner("sun"));
     return file;
 }
 

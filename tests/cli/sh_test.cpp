@@ -7,6 +7,7 @@
 #include "envmap/engine_light.h"
 #include "envmap/io.h"
 #include "envmap/latlong.h"
+#include "sh/basis.h"
 #include "sh/index.h"
 #include "sh/phase_psf.h"
 #include "sh/project.h"
@@ -117,6 +118,57 @@ TEST(ShCommand, FogGivesTheCoefficientsOfTheFoggyMapToItsTolerance) {
         worst = std::max(worst, std::abs(of_fog[i] - of_map[i]) / of_fog[i / 25 * 25]);
     }
     EXPECT_LT(worst, 1e-5) << worst;
+}
+
+TEST(ShCommand, ASunTakenOutAndWhatIsLeftAreTheLight) {
+    const ScratchDirectory directory;
+    const std::string sky = directory / "sky.exr";
+    Image map(512, 256, 3);
+    std::fill(map.pixels.begin(), map.pixels.end(), 0.5f);
+    for (const int i : {100, 101}) {
+        for (int c = 0; c < 3; ++c) map.at(90, i, c) = 1e5f * static_cast<float>(3 - c);
+    }
+    write_image(sky, map);
+    for (const std::string thickness : {"0", "0.5,1,2"}) {
+        const auto light = [&](const std::string& sun) {
+            const Outcome outcome = run({"sh", sky, "-o", "-", "--order", "4", "--fog", thickness,
+                                         "--albedo", "0.9", "--sun", sun});
+            EXPECT_EQ(outcome.status, 0) << outcome.err;
+            return parse_sh_file(outcome.out, "standard output");
+        };
+        const ShFile whole = light("keep"), rest = light("extract");
+        EXPECT_FALSE(whole.sun);
+        ASSERT_TRUE(rest.sun);
+        const auto [x, y, z] = rest.sun->direction;
+        double basis[16];
+        evaluate_basis(4, x, y, z, basis);
+        for (std::size_t c = 0; c < 3; ++c) {
+            EXPECT_GT(rest.sun->irradiance[c], 1);
+            for (std::size_t i = 0; i < 16; ++i) {
+                // The light has no width: degree 3 loses 12 / 8 of the angular radius squared.
+                EXPECT_NEAR(rest.coefficients[16 * c + i] + rest.sun->irradiance[c] * basis[i],
+                            whole.coefficients[16 * c + i], 1e-3 * whole.coefficients[16 * c]);
+            }
+        }
+    }
+    // Without fog, the sky alone is left.
+    const ShFile left = parse_sh_file(
+        run({"sh", sky, "-o", "-", "--order", "2", "--sun", "extract"}).out, "standard output");
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(left.coefficients[4 * c], 0.5 * std::sqrt(4 * std::acos(-1)), 1e-5);
+    }
+    const Outcome engine =
+        run({"sh", sky, "-o", "-", "--sun", "extract", "--format", "unity", "--turn", "10"});
+    EXPECT_EQ(engine.status, 0);
+    EXPECT_NE(engine.err.find("standard output: the sun is no part of it: it stands at ("),
+              std::string::npos)
+        << engine.err;
+    std::fill(map.pixels.begin(), map.pixels.end(), 0.5f);
+    write_image(directory / "flat.exr", map);
+    const Outcome flat = run({"sh", directory / "flat.exr", "-o", "-", "--sun", "extract"});
+    EXPECT_EQ(flat.status, 0);
+    EXPECT_NE(flat.err.find("flat.exr: no sun was taken out: "), std::string::npos) << flat.err;
+    EXPECT_FALSE(parse_sh_file(flat.out, "standard output").sun);
 }
 
 TEST(ShCommand, WindowsAreThoseOfTheLibrary) {

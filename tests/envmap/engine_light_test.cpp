@@ -317,6 +317,17 @@ TEST(EngineLight, TakesTheFirstThreeDegreesOfAnyOrder) {
     }
 }
 
+TEST(EngineLight, DirectionsGoWhereTheLightGoes) {
+    for (const Vector& n : normals()) {
+        EXPECT_EQ(engine_direction(EngineFormat::unity, n), unity_axes(n));
+        EXPECT_EQ(engine_direction(EngineFormat::unreal, n), unreal_axes(n));
+        for (const EngineFormat format :
+             {EngineFormat::filament, EngineFormat::three, EngineFormat::gltf}) {
+            EXPECT_EQ(engine_direction(format, n), n);
+        }
+    }
+}
+
 TEST(EngineLight, RefusesWhatFloatsDoNotHold) {
     const EngineFormat all[] = {EngineFormat::filament, EngineFormat::three, EngineFormat::unity,
                                 EngineFormat::unreal, EngineFormat::gltf};

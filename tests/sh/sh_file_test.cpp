@@ -34,6 +34,7 @@ TEST(ShFiles, ComeBackInEveryBit) {
     file.map = ShFileMap{64, 32};
     file.fog = ShFileFog{{0.5, 1e-300, 2}, {1.0 / 3}, "hg:-0.6"};
     file.window = ShFileWindow{"auto", -0.25, 1.0 / 7};
+    file.sun = ShFileSun{{0.6, 0.8, 0}, {1e5, 1.0 / 3, 0}, 0.0047};
     const ScratchDirectory directory;
     write_sh_file(directory / "a.json", file);
     const ShFile back = read_sh_file(directory / "a.json");
@@ -42,7 +43,10 @@ TEST(ShFiles, ComeBackInEveryBit) {
     EXPECT_EQ(std::memcmp(back.coefficients.data(), file.coefficients.data(),
                           file.coefficients.size() * sizeof(double)),
               0);
-    ASSERT_TRUE(back.map && back.fog && back.window);
+    ASSERT_TRUE(back.map && back.fog && back.window && back.sun);
+    EXPECT_EQ(back.sun->direction, file.sun->direction);
+    EXPECT_EQ(back.sun->irradiance, file.sun->irradiance);
+    EXPECT_EQ(back.sun->angular_radius, 0.0047);
     EXPECT_EQ(back.map->width, 64);
     EXPECT_EQ(back.map->height, 32);
     EXPECT_EQ(back.fog->optical_thickness, file.fog->optical_thickness);
@@ -56,7 +60,7 @@ TEST(ShFiles, ComeBackInEveryBit) {
 
 TEST(ShFiles, LackWhatWasNotDone) {
     const ShFile back = parse_sh_file(sh_file_text(some_file(1)), "a");
-    EXPECT_FALSE(back.map || back.fog || back.window);
+    EXPECT_FALSE(back.map || back.fog || back.window || back.sun);
 }
 
 TEST(ShFiles, AreNotReplacedUnasked) {
@@ -75,6 +79,7 @@ class BadShFile : public testing::Test {
         file.fog = ShFileFog{{1}, {0.5}, "isotropic"};
         file.window = ShFileWindow{"auto", 0, 1};
         file.map = ShFileMap{4, 2};
+        file.sun = ShFileSun{{0.6, 0.8, 0}, {1, 2, 3}, 0.25};
         text_ = sh_file_text(file);
     }
 
@@ -214,6 +219,16 @@ TEST_F(BadShFile, HasFogOrAWindowThatIsNone) {
     refuse("\"strength\": 1", "\"strength\": -1", "window.strength is -1, not a number >= 0");
     refuse("\"width\": 4", "\"width\": 0", "map.width is 0, not an integer in [1, 2147483647]");
     refuse("{\"width\": 4, \"height\": 2}", "4", "map is 4, not an object");
+}
+
+TEST_F(BadShFile, HasASunThatIsNone) {
+    refuse("[0.6, 0.8, 0]", "[0.6, 0.6, 0]",
+           "sun.direction has the length 0.848528137423857, not 1");
+    refuse("[0.6, 0.8, 0]", "[3, 4, 0]", "sun.direction[0] is 3, not a number in [-1, 1]");
+    refuse("[0.6, 0.8, 0]", "[1]", "sun.direction holds one number, not 3");
+    refuse("[1, 2, 3]", "[1, -2, 3]", "sun.irradiance[1] is -2, not a number >= 0");
+    refuse("\"angular_radius\": 0.25", "\"angular_radius\": 2",
+           "sun.angular_radius is 2, not a number in [0, 1.5707963267948966]");
 }
 
 TEST_F(BadShFile, CannotBeReadOrIsTooLarge) {
