@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// airlight info: what an image or a coefficient file holds.
+// airlight info: what an image, a coefficient file or a BRDF table holds.
 #include "envmap/info.h"
 
 #include <fmt/format.h>
@@ -9,12 +9,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/brdf_report.h"
 #include "cli/command.h"
 #include "cli/info_sh.h"
 #include "core/atomic_file.h"
 #include "core/descriptor.h"
 #include "core/error.h"
 #include "envmap/io.h"
+#include "sh/brdf_file.h"
 
 namespace airlight {
 namespace {
@@ -24,7 +26,8 @@ struct FileFigures {
     ImageInfo header;
     std::optional<ImageStatistics> statistics;
     std::vector<std::string> notes;
-    std::optional<ShFile> light;  ///< of a coefficient file, which has none of the above
+    std::optional<ShFile> light;      ///< of a coefficient file, which has none of the above
+    std::optional<BrdfFigures> brdf;  ///< likewise of a BRDF table
 };
 
 // A pipe can be read once, and the header is wanted before the pixels: both take a copy.
@@ -51,6 +54,15 @@ std::string readable_path(const std::string& path, std::size_t max_memory, Descr
     return "/proc/self/fd/" + std::to_string(copy.get());
 }
 
+BrdfFigures look_into_brdf(const std::string& path, std::size_t max_memory) {
+    BrdfReadOptions options;
+    options.max_memory = max_memory;
+    options.nonfinite = BrdfNonfinite::invalid;
+    BrdfReadReport report;
+    const BrdfTable table = read_brdf(path, options, &report);
+    return brdf_figures(table, report.nonfinite);
+}
+
 FileFigures look_into(const std::string& path, std::size_t max_memory) {
     Descriptor copy;
     const std::string readable = readable_path(path, max_memory, copy);
@@ -59,6 +71,10 @@ FileFigures look_into(const std::string& path, std::size_t max_memory) {
     try {
         if (is_json_file(readable)) {
             file.light = read_sh_file(readable, max_memory);
+            return file;
+        }
+        if (looks_like_brdf(readable)) {
+            file.brdf = look_into_brdf(readable, max_memory);
             return file;
         }
         file.header = probe_image(readable);
@@ -92,6 +108,7 @@ bool is_ours(const Attribute& attribute) {
 
 std::string to_lines(const FileFigures& file, bool all_attributes) {
     if (file.light) return to_lines(file.path, *file.light);
+    if (file.brdf) return file.path + "\n" + to_lines(*file.brdf);
     const ImageInfo& header = file.header;
     std::string text = fmt::format("{}\n  {} x {} pixels, {}, channels {}, {}", file.path,
                                    header.width, header.height, header.format,
@@ -137,6 +154,11 @@ nlohmann::ordered_json to_json(const Attribute& attribute) {
 
 nlohmann::ordered_json to_json(const FileFigures& file) {
     if (file.light) return to_json(file.path, *file.light);
+    if (file.brdf) {
+        nlohmann::ordered_json json = {{"file", file.path}, {"format", "brdf"}};
+        json.update(to_json(*file.brdf));
+        return json;
+    }
     const ImageInfo& header = file.header;
     nlohmann::ordered_json json = {
         {"file", file.path},
@@ -197,17 +219,18 @@ void run_info(const std::vector<std::string>& paths, const CommonOptions& common
 }  // namespace
 
 Command declare_info(CLI::App& program) {
-    Command command =
-        declare_command(program, "info", "FILE...", "Tell what an image or coefficient file holds",
-                        "  airlight info room.exr foggy.exr\n"
-                        "  airlight info room.exr --json\n"
-                        "With -v, all attributes of the file are listed.");
+    Command command = declare_command(
+        program, "info", "FILE...", "Tell what an image, a coefficient file or a BRDF table holds",
+        "  airlight info room.exr foggy.exr\n"
+        "  airlight info room.exr --json\n"
+        "  airlight info paint.binary\n"
+        "With -v, all attributes of the file are listed.");
     const auto paths = std::make_shared<std::vector<std::string>>();
     command.app
         ->add_option(
             "files", *paths,
-            "Images (.exr, .hdr, .pfm, .tif) or coefficient files of airlight sh (- is standard "
-            "input)")
+            "Images (.exr, .hdr, .pfm, .tif), coefficient files of airlight sh, BRDF tables "
+            "(.binary); - is standard input")
         ->option_text(" ");
     add_json_flag(command, "Print the figures as JSON");
     add_max_memory_flag(command);

@@ -104,7 +104,7 @@ int run(int argc, char** argv) {
     const std::vector<Command> commands = {declare_fog(program),    declare_info(program),
                                            declare_eval(program),   declare_sheet(program),
                                            declare_ladder(program), declare_sh(program),
-                                           declare_export(program)};
+                                           declare_export(program), declare_brdf(program)};
     const Command* command = nullptr;
     try {
         command = parse(program, commands, argc, argv);
