@@ -18,6 +18,7 @@
 #include <glm/geometric.hpp>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/constants.h"
@@ -61,9 +62,9 @@ std::vector<BrdfDirections> random_pairs(std::size_t count) {
     return pairs;
 }
 
-void add_lookup(int hundredths, BrdfLookup lookup, const std::string& name) {
+void add_lookup(int hundredths, BrdfLookup lookup, std::string_view name) {
     benchmark::RegisterBenchmark(
-        ("lookup/" + name + "/" + std::to_string(hundredths)).c_str(),
+        ("lookup/" + std::string(name) + "/" + std::to_string(hundredths)).c_str(),
         [=](benchmark::State& state) {
             const RoughMetal metal = metal_of(hundredths);
             const BrdfTable table = tabulate(metal);
@@ -213,10 +214,10 @@ void add_fog(int order, int hundredths) {
 }  // namespace airlight
 
 int main(int argc, char** argv) {
-    using airlight::BrdfLookup;
     for (const int hundredths : {5, 10, 20, 50}) {
-        airlight::add_lookup(hundredths, BrdfLookup::nearest, "nearest");
-        airlight::add_lookup(hundredths, BrdfLookup::linear, "linear");
+        for (const auto& rung : airlight::kBrdfLookups) {
+            airlight::add_lookup(hundredths, rung.method, rung.name);
+        }
     }
     for (const int order : {16, 64, 128}) airlight::add_bands(order, 20);
     for (const int samples : {64, 128, 256}) {

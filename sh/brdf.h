@@ -22,6 +22,8 @@
 #include <string>
 #include <vector>
 
+#include "core/method_names.h"
+
 namespace airlight {
 
 /// Cells along theta_h, theta_d and phi_d.
@@ -85,6 +87,10 @@ BrdfAngles brdf_cell_centre(const BrdfSize& size, int half, int difference, int 
 enum class BrdfLookup {
     nearest,  ///< the cell that holds the coordinates, as the readers of [Matusik03] look up
     linear,   ///< trilinear between centres of cells that have a value
+};
+inline constexpr NamedMethod<BrdfLookup> kBrdfLookups[] = {
+    {BrdfLookup::nearest, "nearest"},
+    {BrdfLookup::linear, "linear"},
 };
 
 /// The BRDF [1/sr] in R, G, B. 0 where a direction is not above the horizon, or the table has no

@@ -212,10 +212,10 @@ std::vector<glm::dvec3> convolved(const BrdfTable& table, const BrdfSize& size,
     const int order = options.order;
     std::vector<std::vector<double>> lambda;
     for (int c = 0; c < 3; ++c) {
+        // The factored form is T e^-T e PSF_1, and e PSF_1 is what `scaled` means at T = 1.
         const double thickness =
             options.psf == PsfForm::factored ? 1 : channel_value(options.optical_thickness, c);
         lambda.push_back(psf_eigenvalues_scaled(thickness, options.phase, order));
-        // The factored form is T e^-T e PSF_1, and e PSF_1 is what `scaled` means at T = 1.
     }
     const OutgoingNodes nodes(options.outgoing);
     const Cells cells(size);

@@ -323,6 +323,38 @@ TEST(FoggyBrdf, ChannelsHaveTheirOwnThicknessAndAlbedo) {
     }
 }
 
+TEST(FoggyBrdf, FactoredIsThatOfThicknessOneScaled) {
+    const BrdfTable table = tabulate(RoughMetal{0.5}, kSmall);
+    BrdfFogOptions options = fog(1, 16);
+    options.component = BrdfComponent::scattered;
+    const BrdfTable one = foggy_brdf(table, options);
+    options.optical_thickness = {3};
+    options.psf = PsfForm::factored;
+    const BrdfTable three = foggy_brdf(table, options);
+    for (std::size_t i = 0; i < one.values.size(); ++i) {
+        const double scale = one.values[i] < 0 ? 1 : 3 * std::exp(-3.0) / std::exp(-1.0);
+        ASSERT_NEAR(three.values[i], scale * one.values[i], 1e-12 * std::abs(three.values[i]));
+    }
+}
+
+TEST(FoggyBrdf, DirectedTablesStayDirectedAndMeanTheSame) {
+    const BrdfTable half = tabulate(RoughMetal{0.5}, kSmall);
+    BrdfFogOptions options = fog(0);
+    options.directed = true;
+    const BrdfTable full = foggy_brdf(half, options);
+    options = fog(1, 16);
+    const BrdfTable from_full = foggy_brdf(full, options);
+    EXPECT_TRUE(from_full.size.directed());
+    options.directed = true;
+    const BrdfTable from_half = foggy_brdf(half, options);
+    ASSERT_EQ(from_full.values.size(), from_half.values.size());
+    double largest = 0;
+    for (const double value : from_half.values) largest = std::max(largest, value);
+    for (std::size_t i = 0; i < from_half.values.size(); ++i) {
+        ASSERT_NEAR(from_full.values[i], from_half.values[i], 1e-12 * largest);
+    }
+}
+
 TEST(FoggyBrdf, DoesNotDependOnThreads) {
     const BrdfTable table = tabulate(RoughMetal{}, kSmall);
     const std::vector<double> all = foggy_brdf(table, fog(1, 16)).values;
