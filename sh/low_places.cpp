@@ -101,7 +101,13 @@ std::vector<LowPlace> LowPlaces::below(const double* coefficients, double bound)
             if (value > reach || !is_low_around(values, j, i)) continue;
             LowPlace place = descend(c, at(j, i), value);
             place.value = std::ldexp(place.value, own.exponent);
-            if (place.value < bound) places.push_back(place);
+            const auto same = [&](const LowPlace& other) {
+                const auto &a = place.direction, &b = other.direction;
+                return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) < 0.02 * kPi / rows_;
+            };
+            if (place.value < bound && std::none_of(places.begin(), places.end(), same)) {
+                places.push_back(place);
+            }
         }
     }
     return places;
@@ -133,27 +139,66 @@ LowPlace LowPlaces::descend(const double* coefficients, std::size_t sample, doub
     std::vector<double> basis(sh_count(order_));
     Vector place = {x_[sample], y_[sample], z_[sample]};
     double step = kPi / rows_;
-    for (const double end = 1e-5 * step; step > end;) {
+    const double widest = step, end = 1e-5 * step;
+    // A level valley would take many more, for nothing.
+    for (int round = 0; round < 200 && step > end; ++round) {
         const Vector away = std::abs(place[2]) < 0.7 ? Vector{0, 0, 1} : Vector{1, 0, 0};
         const Vector u =
             unit({place[1] * away[2] - place[2] * away[1], place[2] * away[0] - place[0] * away[2],
                   place[0] * away[1] - place[1] * away[0]});
         const Vector v = {place[1] * u[2] - place[2] * u[1], place[2] * u[0] - place[0] * u[2],
                           place[0] * u[1] - place[1] * u[0]};
+        const auto beside = [&](double a, double b) {
+            return unit({place[0] + a * u[0] + b * v[0], place[1] + a * u[1] + b * v[1],
+                         place[2] + a * u[2] + b * v[2]});
+        };
+        // Eight places around, and the lowest one of the parabola through them.
+        double around[8];
         Vector next = place;
+        double lowest = value;
         for (int k = 0; k < 8; ++k) {
-            const double a = step * std::cos(k * kPi / 4), b = step * std::sin(k * kPi / 4);
-            const Vector trial =
-                unit({place[0] + a * u[0] + b * v[0], place[1] + a * u[1] + b * v[1],
-                      place[2] + a * u[2] + b * v[2]});
-            const double there = value_at(coefficients, trial, basis);
-            if (there < value) {
-                value = there;
+            const Vector trial = beside(step * std::cos(k * kPi / 4), step * std::sin(k * kPi / 4));
+            around[k] = value_at(coefficients, trial, basis);
+            if (around[k] < lowest) {
+                lowest = around[k];
                 next = trial;
             }
         }
-        if (next == place) step /= 2;
+        const double diagonal = std::sqrt(0.5);
+        const double fa =
+            (around[0] - around[4] + diagonal * (around[1] + around[7] - around[3] - around[5])) /
+            4;
+        const double fb =
+            (around[2] - around[6] + diagonal * (around[1] + around[3] - around[5] - around[7])) /
+            4;
+        const double faa = around[0] + around[4] - 2 * value;
+        const double fbb = around[2] + around[6] - 2 * value;
+        const double fab = (around[1] + around[5] - around[3] - around[7]) / 2;
+        const double damping = 1e-9 * (std::abs(faa) + std::abs(fbb));
+        const double determinant = (faa + damping) * (fbb + damping) - fab * fab;
+        double reduction = 2;
+        if (faa > 0 && determinant > 0) {
+            double a = (fab * fb - (fbb + damping) * fa) / determinant;
+            double b = (fab * fa - (faa + damping) * fb) / determinant;
+            const double length = std::hypot(a, b);
+            // Along a valley the parabola sees further than its places.
+            const double farthest = std::min(4.0, widest / step);
+            if (length > farthest) {
+                a *= farthest / length;
+                b *= farthest / length;
+            }
+            const Vector trial = beside(step * a, step * b);
+            const double there = value_at(coefficients, trial, basis);
+            if (there <= lowest) {
+                lowest = there;
+                next = trial;
+                if (length < 1) reduction = 8;
+            }
+        }
+        const bool moved = next != place;
+        step = !moved || reduction > 2 ? step / reduction : std::min(2 * step, widest);
         place = next;
+        value = lowest;
     }
     return {place, value};
 }

@@ -42,7 +42,7 @@ struct AutomaticWindow {
 ///
 /// The least value need not grow with the strength, since the kernel of the window is a little
 /// negative in places. The strength is the upper end of an interval over which it crosses the
-/// bound, found on steps of 4; among 3000 random lights none had a weaker one 1, 3, 10 or 30 %
+/// bound, found on steps of 4; among 10^4 random lights none had a weaker one 1, 3, 10 or 30 %
 /// below.
 ///
 /// Throws Error: usage if least >= 1 or is NaN or the order is not in [1, kLargestAutomaticOrder];

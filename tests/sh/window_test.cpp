@@ -16,7 +16,7 @@
 namespace airlight {
 namespace {
 
-constexpr int kLights = 100;  // 3000 were tried once, for the figure in the header
+constexpr int kLights = 200;  // 10^4 were tried once, for the figure in the header
 
 /// A light of that colour from (x, y, z): what a sun becomes, the hardest to bring above 0.
 std::vector<double> sun(int order, double x, double y, double z) {
