@@ -11,17 +11,13 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/threads.h"
+#include "medium/phase_airlight.h"
 #include "medium/surface_radiance.h"
-#include "sh/basis.h"
-#include "sh/brdf_bands.h"
 #include "sh/brdf_models.h"
-#include "sh/brdf_reflectance.h"
-#include "sh/index.h"
 #include "sh/lobes.h"
 #include "sh/npsf.h"
 #include "sh/quadrature.h"
-#include "sh/rotation.h"
-#include "sh/zonal.h"
+#include "tests/sh/skewed_brdf.h"
 
 namespace airlight {
 namespace {
@@ -38,60 +34,6 @@ BrdfFogOptions fog(double thickness, int order = 32) {
     options.order = order;
     options.outgoing = 24;
     return options;
-}
-
-// The norm over the sphere of a - b, relative to that of b.
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-    double apart = 0, all = 0;
-    for (std::size_t i = 0; i < b.size(); ++i) {
-        apart += (a[i] - b[i]) * (a[i] - b[i]);
-        all += b[i] * b[i];
-    }
-    return std::sqrt(apart / all);
-}
-
-TEST(BrdfBands, OfALambertianSurfaceAreTheClampedCosine) {
-    constexpr int kOrder = 24;
-    const BrdfTable table = tabulate_lambertian(0.7, kSmall);
-    std::vector<double> bands(3 * sh_count(kOrder)), exact(sh_count(kOrder));
-    std::vector<double> g = zonal_coefficients(clamped_cosine_eigenvalues(kOrder));
-    for (double& value : g) value *= 0.7 / kPi;
-    rotate_zonal(kOrder, g.data(), {0, 0, 1}, exact.data());
-    const BrdfBands projector(kOrder);
-    for (const double theta : {0.0, 0.5, 1.5}) {
-        projector.coefficients(table, theta, bands.data());
-        for (std::size_t i = 0; i < bands.size(); ++i) {
-            EXPECT_NEAR(bands[i], exact[i % exact.size()], 1e-14) << theta << " " << i;
-        }
-    }
-}
-
-TEST(BrdfBands, AreTheIntegralsOverIncidentDirections) {
-    constexpr int kOrder = 20;
-    const BrdfTable table = tabulate(RoughMetal{0.4}, {45, 30, 60});
-    std::vector<double> bands(3 * sh_count(kOrder)), sums(bands.size()), basis(sh_count(kOrder));
-    const double theta_out = 0.8;
-    const glm::dvec3 viewer = spherical(theta_out, 0);
-    // Midpoints, so that nothing is shared with the projection but the definition.
-    constexpr int kRows = 400, kColumns = 800;
-    for (int i = 0; i < kRows; ++i) {
-        const double theta = kPi / 2 * (i + 0.5) / kRows;
-        const double weight =
-            std::sin(theta) * std::cos(theta) * kPi / 2 / kRows * 2 * kPi / kColumns;
-        for (int k = 0; k < kColumns; ++k) {
-            const glm::dvec3 in = spherical(theta, 2 * kPi * (k + 0.25) / kColumns);
-            const glm::dvec3 value = weight * evaluate_brdf(table, in, viewer);
-            evaluate_basis(kOrder, in.x, in.y, in.z, basis.data());
-            for (std::size_t j = 0; j < sums.size(); ++j) {
-                sums[j] += value[static_cast<int>(j / basis.size())] * basis[j % basis.size()];
-            }
-        }
-    }
-    BrdfBands(kOrder).coefficients(table, theta_out, bands.data());
-    // The table's kinks at its cells limit both rules.
-    EXPECT_LT(distance(bands, sums), 1e-3);
-    // sqrt(4 pi) rho_00 is the reflectance.
-    EXPECT_NEAR(std::sqrt(4 * kPi) * bands[0], directional_reflectance(table, theta_out).x, 2e-3);
 }
 
 TEST(FoggyBrdf, WithoutScatteringIsTheTable) {
@@ -225,7 +167,8 @@ TEST(FoggyBrdf, SpreadsTheEnergyOfThePointSpreadFunction) {
 }
 
 // E by quadrature about the source, where PSF sin(gamma) is bounded.
-glm::dvec3 brute_force(const RoughMetal& metal, double thickness, const glm::dvec3& source,
+template <class Brdf, class Spread>
+glm::dvec3 brute_force(const Brdf& brdf, const Spread& spread, const glm::dvec3& source,
                        const glm::dvec3& viewer) {
     const glm::dvec3 side = glm::normalize(
         glm::cross(source, std::abs(source.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
@@ -235,49 +178,73 @@ glm::dvec3 brute_force(const RoughMetal& metal, double thickness, const glm::dve
     for (int i = 0; i < kRows; ++i) {
         const double u = (i + 0.5) / kRows, gamma = kPi * u * u;
         const double weight =
-            psf(thickness, gamma) * std::sin(gamma) * 2 * kPi * u / kRows * 2 * kPi / kColumns;
+            spread(gamma) * std::sin(gamma) * 2 * kPi * u / kRows * 2 * kPi / kColumns;
         for (int k = 0; k < kColumns; ++k) {
             const double phi = 2 * kPi * (k + 0.5) / kColumns;
             const glm::dvec3 in = std::cos(gamma) * source +
                                   std::sin(gamma) * (std::cos(phi) * side + std::sin(phi) * other);
-            if (in.z > 0) sum += weight * in.z * evaluate_metal(metal, in, viewer);
+            if (in.z > 0) sum += weight * in.z * brdf(in, viewer);
         }
     }
     return sum;
 }
 
+// The largest error of E over the largest E, in cells up to 80 degrees from the normal.
+template <class Brdf, class Spread>
+double error_of_scattered(const BrdfTable& foggy, const Brdf& brdf, const Spread& spread) {
+    const BrdfSize& size = foggy.size;
+    double worst = 0, largest = 0;
+    for (const int h : {0, size.half / 10, size.half / 3, 3 * size.half / 5, 4 * size.half / 5}) {
+        for (const int d :
+             {1, size.difference / 3, 2 * size.difference / 3, 5 * size.difference / 6}) {
+            for (const int p : {3, 50, 100}) {
+                const BrdfDirections at = brdf_directions(brdf_cell_centre(size, h, d, p));
+                if (at.in.z < 0.17 || at.out.z < 0.17) continue;
+                const auto index =
+                    static_cast<std::size_t>((h * size.difference + d) * size.azimuth + p);
+                const glm::dvec3 exact = brute_force(brdf, spread, at.in, at.out);
+                for (int c = 0; c < 3; ++c) {
+                    const double value =
+                        foggy.channel(c)[index] * kBrdfScale[static_cast<std::size_t>(c)] * at.in.z;
+                    worst = std::max(worst, std::abs(value - exact[c]));
+                    largest = std::max(largest, exact[c]);
+                }
+            }
+        }
+    }
+    EXPECT_GT(largest, 0);
+    return worst / largest;
+}
+
 TEST(FoggyBrdf, OfAMetalIsTheIntegralOfItsAirlight) {
     RoughMetal metal;
     metal.roughness = 0.3;
-    const BrdfSize size = {90, 45, 90};
-    const BrdfTable table = tabulate(metal, size);
-    BrdfFogOptions options;
-    options.optical_thickness = {1};
-    options.order = 64;
+    BrdfFogOptions options = fog(1, 64);
     options.outgoing = 46;
     options.directed = true;
     options.component = BrdfComponent::scattered;
     BrdfFogReport report;
-    const BrdfTable foggy = foggy_brdf(table, options, &report);
+    const BrdfTable foggy = foggy_brdf(tabulate(metal, {90, 45, 90}), options, &report);
     EXPECT_LT(report.deepest, 1e-3);
-    double worst = 0, largest = 0;
-    for (const int h : {0, 8, 30, 55, 70}) {
-        for (const int d : {2, 15, 30, 37}) {
-            for (const int p : {0, 50, 100}) {
-                const BrdfDirections at = brdf_directions(brdf_cell_centre(foggy.size, h, d, p));
-                if (at.in.z < 0.17 || at.out.z < 0.17) continue;
-                const auto index =
-                    static_cast<std::size_t>((h * size.difference + d) * foggy.size.azimuth + p);
-                const double exact = brute_force(metal, 1, at.in, at.out).x;
-                const double value = foggy.channel(0)[index] * kBrdfScale[0] * at.in.z;
-                worst = std::max(worst, std::abs(value - exact));
-                largest = std::max(largest, exact);
-            }
-        }
-    }
-    RecordProperty("metal", std::to_string(worst / largest));
-    EXPECT_LT(worst, 5e-3 * largest);
-    EXPECT_GT(largest, 0);
+    const double error = error_of_scattered(
+        foggy, [&](const auto& in, const auto& out) { return evaluate_metal(metal, in, out); },
+        [](double gamma) { return psf(1.0, gamma); });
+    RecordProperty("metal", std::to_string(error));
+    // Measured 3e-3; half the cells of theta_h make it 7e-3: it is the table's interpolation.
+    EXPECT_LT(error, 5e-3);
+}
+
+TEST(FoggyBrdf, TakesThePhaseFunctionAndKeepsWhichSideIsWhich) {
+    BrdfFogOptions options = fog(1.5, 48);
+    options.outgoing = 46;
+    options.component = BrdfComponent::scattered;
+    options.phase = PhaseFunction::henyey_greenstein(0.6);
+    const BrdfTable foggy = foggy_brdf(tabulate_skewed({45, 30, 120}), options);
+    const double error = error_of_scattered(
+        foggy, skewed, [&](double gamma) { return psf(1.5, gamma, options.phase); });
+    RecordProperty("skewed", std::to_string(error));
+    // Measured 1.6e-4.
+    EXPECT_LT(error, 5e-4);
 }
 
 TEST(FoggyBrdf, KeepsTheMeanOfBothDirectionsWhereTheLayoutHoldsOne) {
