@@ -54,16 +54,16 @@ struct Sun {
 /// meant above, and the plane fitted to them, within their extremes, replaces the lobe, channel by
 /// channel; what is below it stays.
 ///
-/// Energy: what the map lost is the irradiance, of each channel to 1e-14. The first moment of what
-/// the map lost differs from irradiance * direction by at most irradiance * 2 sin(a/2), a the
-/// largest angle between direction and a point of the lobe; of the luminance, by (1 - cos a), as
-/// direction is its mean. Spherical harmonics of what is left and of the light,
+/// Energy: what the map lost is the irradiance, of each channel to 1e-13 of the map's. The first
+/// moment of what the map lost differs from irradiance * direction by at most irradiance * 2
+/// sin(a/2), a the largest angle between direction and a point of the lobe; of the luminance, by (1
+/// - cos a), as direction is its mean. Spherical harmonics of what is left and of the light,
 /// irradiance * Y_lm(direction), sum to those of the map but for l (l+1) angular_radius^2 / 8 of
 /// the light's, in degree l, for a disc (tests: within 5 % of that, up to l = 5).
 ///
 /// A second call takes the next sun. Single dark pixels that lossy compression leaves within a sun
 /// stay. Cost: a pass over the map and O(n log n) for the n pixels within largest_radius; 1024 x
-/// 512, one thread: 10 to 40 ms.
+/// 512 takes 10 to 40 ms, 4096 x 2048 0.2 s, one thread of a busy machine.
 ///
 /// Throws Error: usage for options outside their domain, data if the map has no pixels or values
 /// that are not finite, with their number and the first one's place.

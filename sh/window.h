@@ -24,7 +24,7 @@ std::vector<double> smoothing_window(int order, double strength);
 
 /// The least value over the sphere of the function with these coefficients, order >= 1; NaN if one
 /// is not finite. How it is found, and how surely, is told in sh/low_places.h; the result is at
-/// most 1e-9 of the range of values above the least. Cost for order 6, one thread: 0.1 ms.
+/// most 1e-9 of the range of values above the least. Cost for order 6, one thread: 1 ms.
 double least_value(int order, const double* coefficients);
 
 /// The largest order of automatic_window.
