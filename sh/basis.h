@@ -32,7 +32,7 @@ namespace airlight {
 ///
 /// Error, in units of 2^-52 sqrt((2l+1)/(4 pi)), the square root being the root mean square of Y_lm
 /// over the sphere and m: under 4 + 1.5 l up to order 4096 (measured at poles and elsewhere: 5.4
-/// for order 16, 13 for 64, 30 for 512, 77 for 2048; docs/BASIS_ACCURACY.md has all). What grows
+/// for order 16, 13 for 64, 30 for 512, 120 for 4096; docs/BASIS_ACCURACY.md has all). What grows
 /// with l is the rounding of theta and phi. The float overload computes in double and rounds once.
 ///
 /// Cost, one thread: 18 ns for order 4, 54 ns for 8, 0.19 us for 16, 0.84 us for 32, 1.1 ms for

@@ -7,7 +7,7 @@ set(existing)
 project_files(files *_test.cpp)
 foreach(file IN LISTS files)
     read_text(${file} text)
-    string(REGEX MATCHALL "\n(TEST|TEST_F|TEST_P)[(][A-Za-z0-9]+,[ \n]+[A-Za-z0-9]+[)]" tests
+    string(REGEX MATCHALL "\n(TEST|TEST_F|TEST_P|TYPED_TEST|TYPED_TEST_P)[(][A-Za-z0-9]+,[ \n]+[A-Za-z0-9]+[)]" tests
            "${text}")
     foreach(test IN LISTS tests)
         string(REGEX REPLACE ".*[(]([A-Za-z0-9]+),[ \n]+([A-Za-z0-9]+)[)]" "\\1.\\2" test "${test}")

@@ -101,7 +101,7 @@ using Precisions = testing::Types<float, double>;
 TYPED_TEST_SUITE(BasisSums, Precisions);
 
 TYPED_TEST(BasisSums, ProjectionOfTheBasisIsTheUnitMatrix) {
-    for (const int order : {1, 4, 6, 8, 9, 16}) {
+    for (const int order : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 16}) {
         const auto points = gauss_points<TypeParam>(order);
         const std::size_t slots = sh_count(order), count = points.count();
         std::vector<TypeParam> values(slots * count);
@@ -128,7 +128,7 @@ TYPED_TEST(BasisSums, ProjectionOfTheBasisIsTheUnitMatrix) {
 }
 
 TYPED_TEST(BasisSums, ReconstructionAndProjectionUndoEachOtherAndKeepTheEnergy) {
-    for (const int order : {1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 16, 33, 65}) {
+    for (const int order : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 16, 33, 65}) {
         const auto points = gauss_points<TypeParam>(order);
         const std::size_t slots = sh_count(order), count = points.count();
         for (const int channels : {1, 2, 3, 5}) {
@@ -158,7 +158,7 @@ TYPED_TEST(BasisSums, ObeyTheAdditionTheorem) {
     // sum over m of Y_lm(a) Y_lm(b) = (2l+1)/(4 pi) P_l(a.b): the reconstruction at b of the
     // degree l of the basis at a.
     const auto points = random_points<TypeParam>(40);
-    for (const int order : {6, 8, 16}) {
+    for (const int order : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 16}) {
         const std::size_t slots = sh_count(order), count = points.count();
         std::vector<TypeParam> basis(slots * count);
         evaluate_basis_batch(order, count, points.x.data(), points.y.data(), points.z.data(),

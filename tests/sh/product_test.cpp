@@ -233,20 +233,6 @@ TEST(ShProduct, WithTheConstantOneIsTheOtherFactor) {
     }
 }
 
-TEST(ShProduct, CommutesWithRotation) {
-    for (const int order : {3, 6}) {
-        const ShRotation rotation(order, glm::normalize(glm::dquat(0.1, 0.7, -0.4, 0.6)));
-        auto a = random_vectors<double>(sh_count(order), 13);
-        auto b = random_vectors<double>(sh_count(order), 14);
-        std::vector<double> after = product(order, a, b);
-        rotation.rotate(1, after.data(), after.data());
-        rotation.rotate(1, a.data(), a.data());
-        rotation.rotate(1, b.data(), b.data());
-        const std::vector<double> before = product(order, a, b);
-        for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(before[k], after[k], 1e-14);
-    }
-}
-
 // int a b = sqrt(4 pi) (a b)_00 = a . b.
 TEST(ShProduct, ItsIntegralIsTheDotProduct) {
     for (const int order : {3, 5, 6, 8}) {

@@ -190,19 +190,6 @@ TEST(ShRotation, InverseIsTheRotationBack) {
     }
 }
 
-TEST(ShRotation, CommutesWithConvolution) {
-    std::mt19937 random(4);
-    constexpr int kOrder = 8;
-    const ShRotation rotation(kOrder, random_quaternion(random));
-    const auto lambda = random_vectors<double>(kOrder, random);
-    auto first = random_vectors<double>(64, random), second = first;
-    zonal_convolve(lambda, 1, first.data());
-    rotation.rotate(1, first.data(), first.data());
-    rotation.rotate(1, second.data(), second.data());
-    zonal_convolve(lambda, 1, second.data());
-    for (int i = 0; i < 64; ++i) EXPECT_NEAR(first[i], second[i], 1e-14);
-}
-
 TEST(ShRotation, ZonalShortcutIsTheRotationOfTheZonalVector) {
     std::mt19937 random(5);
     for (const int order : {1, 2, 6, 33}) {
