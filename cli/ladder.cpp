@@ -16,6 +16,8 @@
 #include "cli/ladder_closed_forms.h"
 #include "cli/ladder_effects.h"
 #include "cli/ladder_page.h"
+#include "cli/ladder_rungs.h"
+#include "cli/ladder_sh.h"
 #include "cli/numbers.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -37,8 +39,12 @@ std::vector<LadderEffectInfo> ladder_effects() {
     std::vector<LadderEffectInfo> effects = {{"fog", plan_fog_ladder}};
     for (const ClosedFormLadder& ladder : closed_form_ladders()) {
         effects.push_back({ladder.effect, [&ladder](const LadderOptions&) {
-                               return plan_closed_form_ladder(ladder);
+                               return plan_rung_ladder(closed_form_rungs(ladder));
                            }});
+    }
+    for (const ShLadder& ladder : sh_ladders()) {
+        effects.push_back(
+            {ladder.effect, [&ladder](const LadderOptions&) { return ladder.plan(); }});
     }
     return effects;
 }
@@ -158,7 +164,7 @@ Command declare_ladder(CLI::App& program) {
         "  airlight ladder airlight -o report --json\n"
         "DIR gets EFFECT.csv, EFFECT.svg and index.html, one page with all plots and tables. It "
         "is\n"
-        "made if it does not exist. The default takes one or two minutes. With --threads 1 times\n"
+        "made if it does not exist. The default takes some minutes. With --threads 1 times\n"
         "are CPU time, which a busy machine hardly changes; otherwise those of fog are wall time.");
     const auto request = std::make_shared<LadderRequest>();
     command.app

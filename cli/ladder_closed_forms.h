@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/eval_functions.h"
+#include "cli/ladder_rungs.h"
 
 namespace airlight {
 
@@ -29,5 +30,8 @@ struct ClosedFormLadder {
 };
 
 const std::vector<ClosedFormLadder>& closed_form_ladders();
+
+/// A rung for every method on each of the sets.
+RungLadder closed_form_rungs(const ClosedFormLadder& ladder);
 
 }  // namespace airlight

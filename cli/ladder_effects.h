@@ -50,11 +50,6 @@ struct LadderWork {
 /// Fog of sun_and_sky() by every method: errors against the rings at one size, cost at several.
 LadderWork plan_fog_ladder(const LadderOptions& options);
 
-struct ClosedFormLadder;
-
-/// A function of one row by every method of `airlight eval`, on each of its sets.
-LadderWork plan_closed_form_ladder(const ClosedFormLadder& ladder);
-
 /// Which time a measurement is of. CPU time hardly depends on what else the machine does, and where
 /// one thread does all the work it is the wall time of an idle machine.
 enum class TimeKind { wall, cpu };

@@ -2,10 +2,10 @@
 // What each ladder of a single function is measured on: draws that are always the same.
 #include <cmath>
 #include <cstdint>
-#include <random>
 #include <utility>
 
 #include "cli/ladder_closed_forms.h"
+#include "cli/ladder_draws.h"
 #include "medium/airlight_sets.h"
 
 namespace airlight {
@@ -26,19 +26,6 @@ std::vector<ClosedFormSet> airlight_ladder_sets() {
         {"A", "airlight", "optical thicknesses below 2, angles 0.02 … 2.5", airlight_inputs('A')},
         {"B", "airlight-b", "optical thicknesses below 10, angles 0 … π", airlight_inputs('B')}};
 }
-
-// Draws by the standard's generator, whose numbers are the same everywhere.
-class Draws {
-  public:
-    explicit Draws(std::uint64_t seed) : bits_(seed) {}
-    double uniform(double lo, double hi) {
-        return lo + (hi - lo) * (static_cast<double>(bits_() >> 11) + 0.5) * 0x1p-53;
-    }
-    double decades(double lo, double hi) { return std::pow(10.0, uniform(lo, hi)); }
-
-  private:
-    std::mt19937_64 bits_;
-};
 
 template <class Draw>
 std::vector<EvalArguments> draw_inputs(std::uint64_t seed, int count, const Draw& draw) {

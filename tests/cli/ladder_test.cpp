@@ -171,6 +171,142 @@ TEST(Ladder, ClosedFormsHaveARowForEveryMethodAndAnErrorForEveryApproximation) {
     expect_self_contained(read_bytes(scratch / "index.html"));
 }
 
+using Bounds = std::map<std::string, double>;  // of the largest error of a method, by its name
+
+// Bounds are twice what was measured; every row has a time, and an error or a stated bound.
+void expect_sh_ladder(const std::string& effect, const std::string& time, const std::string& error,
+                      const Bounds& bounds, const std::vector<std::string>& plots) {
+    SCOPED_TRACE(effect);
+    const ScratchDirectory scratch;
+    const Outcome outcome = run({"ladder", effect, "-o", scratch.path()});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    Bounds errors;
+    for (const CsvRow& row : read_csv(scratch / (effect + ".csv"))) {
+        EXPECT_GT(std::stod(row.at(time)), 0);
+        if (!row.at("stated_bound").empty()) {
+            EXPECT_GT(std::stod(row.at("stated_bound")), 0);
+            EXPECT_EQ(row.at("max_" + error), "");
+            continue;
+        }
+        double& largest = errors[row.at("method") + ' ' + row.at("set")];
+        largest = std::max(largest, std::stod(row.at("max_" + error)));
+        EXPECT_GT(largest, 0) << row.at("method");
+        EXPECT_LE(std::stod(row.at("rms_" + error)), largest);
+    }
+    for (const auto& [method, bound] : bounds) {
+        bool found = false;
+        for (const auto& [name, largest] : errors) {
+            if (name.rfind(method, 0) != 0) continue;
+            found = true;
+            EXPECT_LE(largest, bound) << name;
+        }
+        EXPECT_TRUE(found) << method;
+    }
+    const std::string page = read_bytes(scratch / "index.html");
+    expect_self_contained(page);
+    for (const std::string& plot : plots) {
+        EXPECT_NE(page.find(read_bytes(scratch / (plot + ".svg"))), std::string::npos) << plot;
+    }
+}
+
+TEST(Ladder, BasisRungsHoldTheirErrors) {
+    expect_sh_ladder("sh-basis", "ns_per_direction", "error",
+                     {{"batch-float", 2.1e-6}, {"batch-double", 5e-15}, {"evaluate-float", 1.2e-7}},
+                     {"sh-basis"});
+}
+
+TEST(Ladder, RotationRungsHoldTheirErrors) {
+    expect_sh_ladder("sh-rotation", "ns_per_vector", "error",
+                     {{"vectors-float", 5e-7},
+                      {"planes-float", 5e-7},
+                      {"each-float", 5e-7},
+                      {"vectors-double", 7e-15},
+                      {"zonal-float", 1.2e-7}},
+                     {"sh-rotation"});
+}
+
+TEST(Ladder, ProductRungsHoldTheirErrors) {
+    expect_sh_ladder("sh-product", "ns_per_product", "error",
+                     {{"sparse", 1.2e-7},
+                      {"tree", 5e-7},
+                      {"rows-planes", 5e-7},
+                      {"rows-single", 5e-7},
+                      {"grid", 1.5e-6},
+                      {"rows-double", 2e-15}},
+                     {"sh-product", "sh-product-single"});
+    expect_sh_ladder("sh-triple", "ns_per_vertex", "error",
+                     {{"matrix", 6e-8}, {"matrix-each", 6e-8}, {"product-dot", 6e-8}},
+                     {"sh-triple"});
+}
+
+TEST(Ladder, GridsOfFunctionsConvergeAtTheirRates) {
+    expect_sh_ladder("sh-function", "ns_per_vector", "error",
+                     {{"grid-12 exp", 1e-2},
+                      {"grid-24 exp", 4e-6},
+                      {"grid-24 log", 3e-4},
+                      {"grid-24 clamp", 2e-3}},
+                     {"sh-function"});
+}
+
+TEST(Ladder, BandRungsHoldTheirErrors) {
+    expect_sh_ladder(
+        "sh-psf", "ns_per_call", "relative_error",
+        {{"cubic16", 8.2e-4}, {"cubic32", 5e-5}, {"chebyshev20", 1e-6}, {"exact", 1.2e-7}},
+        {"sh-psf"});
+}
+
+// Each rule of projection is right for what it is made for, and as wrong as another elsewhere.
+TEST(Ladder, ProjectionRungsHoldTheirErrors) {
+    expect_sh_ladder("sh-projection", "ns_per_pixel", "error",
+                     {{"pixel-means samples", 1.1e-3},
+                      {"centre-samples pixels", 1.3e-3},
+                      {"centre-samples samples", 6e-9},
+                      {"transform samples", 7e-8},
+                      {"batches", 1.3e-3},
+                      {"pixels", 1.3e-3}},
+                     {"sh-projection", "sh-projection-samples"});
+}
+
+TEST(Ladder, LeastChangesKeepTheirBoundAndTakeLess) {
+    const ScratchDirectory scratch;
+    const Outcome outcome = run({"ladder", "sh-window", "-o", scratch.path()});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    std::map<std::string, std::map<std::string, double>> taken;
+    for (const CsvRow& row : read_csv(scratch / "sh-window.csv")) {
+        const std::string& method = row.at("method");
+        const double least = std::stod(row.at("least_over_mean"));
+        EXPECT_GT(std::stod(row.at("ms_per_call")), 0);
+        taken[row.at("set")][method + row.at("bound")] = std::stod(row.at("norm_taken"));
+        if (method == "none") {
+            EXPECT_LT(least, -1);
+        }
+        if (!row.at("bound").empty()) {
+            // Six digits are written.
+            EXPECT_GE(least, std::stod(row.at("bound")) - 1e-6) << method;
+        }
+    }
+    ASSERT_EQ(taken.size(), 3u);
+    for (auto& [order, of] : taken) {
+        EXPECT_EQ(of.at("none"), 0) << order;
+        EXPECT_LT(of.at("lanczos"), of.at("hann")) << order;
+        for (const std::string method : {"smoothing", "bands", "nearest"}) {
+            EXPECT_LT(of.at(method + "-0.2"), of.at(method + "0")) << order << ' ' << method;
+        }
+        for (const std::string bound : {"-0.2", "0"}) {
+            EXPECT_LT(of.at("nearest" + bound), of.at("bands" + bound)) << order;
+            EXPECT_LT(of.at("bands" + bound), of.at("smoothing" + bound)) << order;
+        }
+    }
+    expect_self_contained(read_bytes(scratch / "index.html"));
+}
+
+TEST(Ladder, BrdfRungsHoldTheirErrors) {
+    expect_sh_ladder("brdf", "ns_per_lookup", "error", {{"nearest", 0.17}, {"linear", 6.2e-3}},
+                     {"brdf"});
+    expect_sh_ladder("brdf-fog", "ms_per_table", "error",
+                     {{"bands order 16", 0.2}, {"bands order 64", 4e-3}}, {"brdf-fog"});
+}
+
 TEST(Ladder, MistakesAndOldReportsAreRefusedBeforeAnythingIsMeasured) {
     const ScratchDirectory scratch;
     const std::string directory = scratch.path();
