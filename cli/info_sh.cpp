@@ -30,6 +30,10 @@ std::array<double, kChannels> mean_of(const ShFile& light) {
     return mean;
 }
 
+bool keeps_least(const ShFileWindow& window) {
+    return window.name == "auto" || window.name == "bands" || window.name == "nearest";
+}
+
 }  // namespace
 
 std::string to_lines(const std::string& path, const ShFile& light) {
@@ -65,9 +69,12 @@ std::string to_lines(const std::string& path, const ShFile& light) {
     }
     if (light.window) {
         text += fmt::format("  {:<26} {}", "window", light.window->name);
+        if (keeps_least(*light.window)) text += fmt::format(", least {}", light.window->least);
         if (light.window->name == "auto") {
-            text += fmt::format(", least {}, strength {:.6g}", light.window->least,
-                                light.window->strength);
+            text += fmt::format(", strength {:.6g}", light.window->strength);
+        }
+        if (light.window->name == "bands") {
+            text += fmt::format(", factors {:.4g}", fmt::join(light.window->factors, " "));
         }
         text += "\n";
     }
@@ -92,10 +99,9 @@ nlohmann::ordered_json to_json(const std::string& path, const ShFile& light) {
     }
     if (light.window) {
         json["window"] = {{"name", light.window->name}};
-        if (light.window->name == "auto") {
-            json["window"]["least"] = light.window->least;
-            json["window"]["strength"] = light.window->strength;
-        }
+        if (keeps_least(*light.window)) json["window"]["least"] = light.window->least;
+        if (light.window->name == "auto") json["window"]["strength"] = light.window->strength;
+        if (light.window->name == "bands") json["window"]["factors"] = light.window->factors;
     }
     return json;
 }

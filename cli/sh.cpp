@@ -17,6 +17,7 @@
 #include "envmap/engine_light.h"
 #include "envmap/io.h"
 #include "envmap/sun.h"
+#include "sh/dering.h"
 #include "sh/index.h"
 #include "sh/phase_psf.h"
 #include "sh/project.h"
@@ -31,8 +32,12 @@ namespace {
 constexpr std::size_t kChannels = 3;
 constexpr int kEngineOrder = 3;
 
-enum class Window { none, hann, lanczos, automatic };
-constexpr const char* kWindowNames[] = {"none", "hann", "lanczos", "auto"};
+enum class Window { none, hann, lanczos, automatic, bands, nearest };
+constexpr const char* kWindowNames[] = {"none", "hann", "lanczos", "auto", "bands", "nearest"};
+
+bool keeps_least(Window window) {
+    return window == Window::automatic || window == Window::bands || window == Window::nearest;
+}
 
 struct ShRequest {
     std::vector<std::string> inputs;
@@ -76,13 +81,15 @@ void check(const ShRequest& request, const CommonOptions& common) {
     if (!request.fog && request.medium_given) {
         throw Error(ErrorCode::usage, "--albedo and --phase go with --fog T only");
     }
-    if (request.least_given && request.window != Window::automatic) {
-        throw Error(ErrorCode::usage, "goes with --window auto only", "--least");
+    if (request.least_given && !keeps_least(request.window)) {
+        throw Error(ErrorCode::usage, "goes with --window auto, bands and nearest only", "--least");
     }
     const int order = order_of(request);
-    if (request.window == Window::automatic && order > kLargestAutomaticOrder) {
+    if (keeps_least(request.window) && order > kLargestAutomaticOrder) {
         throw Error(ErrorCode::usage,
-                    fmt::format("auto goes up to order {}, not {}", kLargestAutomaticOrder, order),
+                    fmt::format("{} goes up to order {}, not {}",
+                                kWindowNames[static_cast<int>(request.window)],
+                                kLargestAutomaticOrder, order),
                     "--window");
     }
     if (request.output != "-") check_target(request.output, common.force);
@@ -125,7 +132,7 @@ void add_fog(const ShRequest& request, ShFile& light) {
 
 void add_window(const ShRequest& request, ShFile& light) {
     if (request.window == Window::none) return;
-    light.window = ShFileWindow{kWindowNames[static_cast<int>(request.window)]};
+    light.window = ShFileWindow{kWindowNames[static_cast<int>(request.window)], request.least};
     std::vector<double> factors;
     switch (request.window) {
         case Window::none:
@@ -139,11 +146,21 @@ void add_window(const ShRequest& request, ShFile& light) {
         case Window::automatic: {
             const AutomaticWindow window =
                 automatic_window(light.order, kChannels, light.coefficients.data(), request.least);
-            light.window->least = request.least;
             light.window->strength = window.strength;
             factors = window.factors;
             spdlog::info("window of strength {:.6g}", window.strength);
+            break;
         }
+        case Window::bands:
+            factors = least_change_window(light.order, kChannels, light.coefficients.data(),
+                                          request.least);
+            light.window->factors = factors;
+            spdlog::info("window of factors {:.6g}", fmt::join(factors, ", "));
+            break;
+        case Window::nearest:
+            light.coefficients = dering(DeringMethod::nearest, light.order, kChannels,
+                                        light.coefficients.data(), request.least);
+            return;
     }
     apply_window(factors, kChannels, light.coefficients.data());
 }
@@ -210,14 +227,18 @@ void add_light_flags(const Command& command, ShRequest& request) {
              [&](const std::string& text) {
                  request.extract_sun = parse_choice(text, "--sun", {"keep", "extract"}) == 1;
              });
-    add_flag(command, "--window", "none|hann|lanczos|auto",
-             "Window against ringing; auto is the weakest that keeps --least (default: none)",
-             [&](const std::string& text) {
-                 request.window = static_cast<Window>(
-                     parse_choice(text, "--window", {"none", "hann", "lanczos", "auto"}));
-             });
+    add_flag(
+        command, "--window", "none|hann|lanczos|auto|bands|nearest",
+        "Window against ringing. auto: the weakest smoothing that keeps --least; bands: of all "
+        "windows the least change that does; nearest: the least change of any kind, which may "
+        "move light and its hue (default: none)",
+        [&](const std::string& text) {
+            request.window = static_cast<Window>(parse_choice(
+                text, "--window", {"none", "hann", "lanczos", "auto", "bands", "nearest"}));
+        });
     add_flag(command, "--least", "F",
-             "With --window auto: no radiance below F times its channel's mean (default: 0)",
+             "With --window auto, bands and nearest: no radiance below F times its channel's mean "
+             "(default: 0)",
              [&](const std::string& text) {
                  request.least = parse_number(text, "--least", {-1e6, 1, false, true});
                  request.least_given = true;

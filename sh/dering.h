@@ -7,8 +7,9 @@
 
 namespace airlight {
 
-/// What may change. Each keeps the mean of every channel, holds the bound as least_value() sees it,
-/// and changes nothing where the bound holds already.
+/// What may change; `airlight sh --window auto`, `bands` and `nearest`. Each keeps the mean of
+/// every channel, holds the bound as least_value() sees it, and changes nothing where the bound
+/// holds already.
 ///
 /// Squared change over the squared norm without the mean, at bound 0, average (and most) over nine
 /// maps, Blender's eight worlds and data/lamps.exr, and the time for three channels, one thread of

@@ -54,10 +54,12 @@ std::string sh_file_text(const ShFile& file) {
     }
     if (file.window) {
         text += fmt::format(",\n  \"window\": {{\"name\": \"{}\"", file.window->name);
-        if (file.window->name == "auto") {
-            text += fmt::format(", \"least\": {}, \"strength\": {}", file.window->least,
-                                file.window->strength);
+        const bool bands = file.window->name == "bands", automatic = file.window->name == "auto";
+        if (bands || automatic || file.window->name == "nearest") {
+            text += fmt::format(", \"least\": {}", file.window->least);
         }
+        if (automatic) text += fmt::format(", \"strength\": {}", file.window->strength);
+        if (bands) text += fmt::format(", \"factors\": {}", list(file.window->factors));
         text += "}";
     }
     if (file.sun) {

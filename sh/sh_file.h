@@ -27,11 +27,12 @@ struct ShFileFog {
     std::string phase;  ///< "isotropic", "rayleigh", "hg:G" or "table"
 };
 
-/// The window of sh/window.h that is part of the light.
+/// The window of sh/window.h or sh/dering.h that is part of the light.
 struct ShFileWindow {
-    std::string name;  ///< "hann", "lanczos" or "auto"
-    /// Of the automatic one: its bound, in means of a channel, and what came of it.
-    double least = 0, strength = 0;
+    std::string name;             ///< "hann", "lanczos", "auto", "bands" or "nearest"
+    double least = 0;             ///< of the last three, in means of a channel
+    double strength = 0;          ///< of "auto"
+    std::vector<double> factors;  ///< of "bands", one per degree
 };
 
 /// The sun that was taken out of the map and is no part of the coefficients: a directional light.

@@ -113,11 +113,15 @@ class Fields {
         if (!value.is_array() || (value.size() != 1 && value.size() != 3)) {
             refuse_value(key, value, "an array of one number or three");
         }
-        std::vector<double> numbers;
-        for (std::size_t i = 0; i < value.size(); ++i) {
-            numbers.push_back(number(fmt::format("{}[{}]", key, i), value[i], low, high));
+        return all_of(key, value, low, high);
+    }
+
+    std::vector<double> numbers(const char* key, std::size_t count, double low, double high) const {
+        const Json& value = at(key);
+        if (!value.is_array() || value.size() != count) {
+            refuse_value(key, value, fmt::format("an array of {} numbers", count));
         }
-        return numbers;
+        return all_of(key, value, low, high);
     }
 
     std::string text(const char* key) const {
@@ -138,6 +142,14 @@ class Fields {
     }
 
   private:
+    std::vector<double> all_of(const char* key, const Json& array, double low, double high) const {
+        std::vector<double> numbers;
+        for (std::size_t i = 0; i < array.size(); ++i) {
+            numbers.push_back(number(fmt::format("{}[{}]", key, i), array[i], low, high));
+        }
+        return numbers;
+    }
+
     const Json& object_;
     std::string prefix_, file_;
 };
@@ -217,19 +229,27 @@ ShFileFog fog_of(const Fields& fields) {
     return fog;
 }
 
-ShFileWindow window_of(const Fields& fields) {
+ShFileWindow window_of(const Fields& fields, int order) {
     ShFileWindow window;
     window.name = fields.text("name");
-    if (window.name == "auto") {
-        fields.know({"name", "least", "strength"});
-        window.least = fields.number("least", fields.at("least"), -kAny, kAny);
-        window.strength = fields.number("strength", fields.at("strength"), 0, kAny);
+    const bool bands = window.name == "bands", automatic = window.name == "auto";
+    if (window.name == "hann" || window.name == "lanczos") {
+        fields.know({"name"});
         return window;
     }
-    if (window.name != "hann" && window.name != "lanczos") {
-        fields.refuse_value("name", window.name, "hann, lanczos or auto");
+    if (!bands && !automatic && window.name != "nearest") {
+        fields.refuse_value("name", window.name, "hann, lanczos, auto, bands or nearest");
     }
-    fields.know({"name"});
+    window.least = fields.number("least", fields.at("least"), -kAny, kAny);
+    if (automatic) {
+        fields.know({"name", "least", "strength"});
+        window.strength = fields.number("strength", fields.at("strength"), 0, kAny);
+    } else if (bands) {
+        fields.know({"name", "least", "factors"});
+        window.factors = fields.numbers("factors", static_cast<std::size_t>(order), 0, 1);
+    } else {
+        fields.know({"name", "least"});
+    }
     return window;
 }
 
@@ -308,7 +328,8 @@ ShFile parse_sh_file(const std::string& text, const std::string& name) {
                              map.integer("height", 1, kLargestSize)};
     }
     if (fields.find("fog") != nullptr) file.fog = fog_of(fields.inner("fog"));
-    if (fields.find("window") != nullptr) file.window = window_of(fields.inner("window"));
+    if (fields.find("window") != nullptr)
+        file.window = window_of(fields.inner("window"), file.order);
     if (fields.find("sun") != nullptr) file.sun = sun_of(fields.inner("sun"));
     return file;
 }

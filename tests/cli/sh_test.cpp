@@ -8,6 +8,7 @@
 #include "envmap/io.h"
 #include "envmap/latlong.h"
 #include "sh/basis.h"
+#include "sh/dering.h"
 #include "sh/index.h"
 #include "sh/phase_psf.h"
 #include "sh/project.h"
@@ -189,6 +190,32 @@ TEST(ShCommand, WindowsAreThoseOfTheLibrary) {
     expect({"--window", "auto", "--least", "-0.2"}, automatic_window(6, 3, c.data(), -0.2).factors);
 }
 
+TEST(ShCommand, EveryMethodAgainstRingingIsReachedAndTold) {
+    const std::vector<double> c = of_library(4);
+    const DeringMethod methods[] = {DeringMethod::smoothing, DeringMethod::bands,
+                                    DeringMethod::nearest};
+    const std::string names[] = {"auto", "bands", "nearest"};
+    for (int k = 0; k < 3; ++k) {
+        for (const double least : {0.0, 0.25}) {
+            const Outcome outcome = run({"sh", kLamps, "-o", "-", "--order", "4", "--window",
+                                         names[k], "--least", std::to_string(least)});
+            EXPECT_EQ(outcome.status, 0) << outcome.err;
+            const ShFile file = parse_sh_file(outcome.out, "standard output");
+            EXPECT_EQ(file.coefficients, dering(methods[k], 4, 3, c.data(), least)) << names[k];
+            EXPECT_NE(file.coefficients, c);
+            ASSERT_TRUE(file.window);
+            EXPECT_EQ(file.window->name, names[k]);
+            EXPECT_EQ(file.window->least, least);
+            if (names[k] != "bands") continue;
+            EXPECT_EQ(file.window->factors, least_change_window(4, 3, c.data(), least));
+        }
+    }
+    const Outcome engine =
+        run({"sh", kLamps, "-o", "-", "--format", "filament", "--window", "nearest"});
+    EXPECT_EQ(engine.out, engine_text(EngineFormat::filament, 3,
+                                      dering(DeringMethod::nearest, 3, 3, of_library(3).data())));
+}
+
 TEST(ShCommand, EnginesGetWhatTheirConvertersSay) {
     const std::vector<double> c = of_library(3);
     const auto output = [](const std::string& format) {
@@ -246,6 +273,8 @@ TEST(ShCommand, MistakesInTheCallAreNamed) {
     refuse({"a.exr", "-o", "c", "--order", "4", "--format", "three"}, "--order: 4 is beyond 3");
     refuse({"a.exr", "-o", "c", "--order", "17", "--window", "auto"},
            "--window: auto goes up to order 16, not 17");
+    refuse({"a.exr", "-o", "c", "--order", "17", "--window", "nearest"},
+           "--window: nearest goes up to order 16, not 17");
     refuse({"a.exr", "-o", "c", "--format", "usd"},
            "--format: 'usd' is unknown; it can be json, filament");
     refuse({"a.exr", "-o", "c", "--turn", "90"}, "--turn: goes with the formats of engines only");
@@ -253,7 +282,8 @@ TEST(ShCommand, MistakesInTheCallAreNamed) {
     refuse({"a.exr", "-o", "c", "--window", "box"}, "--window: 'box' is unknown");
     refuse({"a.exr", "-o", "c", "--fog", "-1"}, "--fog: '-1' is not a finite number >= 0");
     refuse({"a.exr", "-o", "c", "--albedo", "0.5"}, "--albedo and --phase go with --fog T only");
-    refuse({"a.exr", "-o", "c", "--least", "0"}, "--least: goes with --window auto only");
+    refuse({"a.exr", "-o", "c", "--least", "0"},
+           "--least: goes with --window auto, bands and nearest only");
     refuse({"a.exr", "-o", "c", "--window", "auto", "--least", "1"},
            "--least: '1' is not a number in");
 }

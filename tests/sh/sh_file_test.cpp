@@ -58,6 +58,21 @@ TEST(ShFiles, ComeBackInEveryBit) {
     EXPECT_EQ(sh_file_text(back), sh_file_text(file));
 }
 
+TEST(ShFiles, KeepWhatWasDoneAgainstRinging) {
+    ShFile file = some_file(3);
+    const auto back = [&] { return parse_sh_file(sh_file_text(file), "a").window.value(); };
+    file.window = ShFileWindow{"bands", 0.25, 0, {1, 1.0 / 3, 0}};
+    EXPECT_EQ(back().name, "bands");
+    EXPECT_EQ(back().least, 0.25);
+    EXPECT_EQ(back().factors, file.window->factors);
+    file.window = ShFileWindow{"nearest", -1e300};
+    EXPECT_EQ(back().name, "nearest");
+    EXPECT_EQ(back().least, -1e300);
+    EXPECT_TRUE(back().factors.empty());
+    file.window = ShFileWindow{"hann"};
+    EXPECT_EQ(back().name, "hann");
+}
+
 TEST(ShFiles, LackWhatWasNotDone) {
     const ShFile back = parse_sh_file(sh_file_text(some_file(1)), "a");
     EXPECT_FALSE(back.map || back.fog || back.window || back.sun);
@@ -214,7 +229,17 @@ TEST_F(BadShFile, HasFogOrAWindowThatIsNone) {
            "fog.albedo[0] is 1.5, not a number in [0, 1]");
     refuse("\"isotropic\"", "\"a\\nb\"",
            "fog.phase is \"a\\nb\", not the name of a phase function");
-    refuse("\"auto\"", "\"box\"", "window.name is \"box\", not hann, lanczos or auto");
+    refuse("\"auto\"", "\"box\"",
+           "window.name is \"box\", not hann, lanczos, auto, bands or nearest");
+    refuse("\"auto\"", "\"nearest\"", "the field window.strength is unknown");
+    refuse("\"auto\"", "\"bands\"", "the field window.strength is unknown");
+    const std::string least = "\"auto\", \"least\": 0, \"strength\": 1";
+    refuse(least, "\"bands\", \"least\": 0", "the field window.factors is missing");
+    refuse(least, "\"bands\", \"least\": 0, \"factors\": [1]",
+           "window.factors is an array of 1 values, not an array of 2 numbers");
+    refuse(least, "\"bands\", \"least\": 0, \"factors\": [1, 1.5]",
+           "window.factors[1] is 1.5, not a number in [0, 1]");
+    refuse(least, "\"nearest\"", "the field window.least is missing");
     refuse("\"auto\"", "\"hann\"", "the field window.least is unknown");
     refuse("\"strength\": 1", "\"strength\": -1", "window.strength is -1, not a number >= 0");
     refuse("\"width\": 4", "\"width\": 0", "map.width is 0, not an integer in [1, 2147483647]");
