@@ -54,7 +54,9 @@ LadderWork plan_fog_ladder(const LadderOptions& options);
 /// one thread does all the work it is the wall time of an idle machine.
 enum class TimeKind { wall, cpu };
 
-/// Seconds of the fastest run of several: `least` at least, then until 0.12 s have passed.
-double fastest_seconds(int least, TimeKind kind, const std::function<void()>& run);
+/// Seconds of the fastest run of several: `least` at least, then until `window` seconds have
+/// passed.
+double fastest_seconds(int least, TimeKind kind, const std::function<void()>& run,
+                       double window = 0.12);
 
 }  // namespace airlight

@@ -44,7 +44,8 @@ struct LadderRung {
     std::size_t series = 0;
     std::function<RungResult()> measure;  ///< on one thread
     double bound = 0;  ///< > 0: others are measured against this one, whose own error is under it
-    std::uint64_t weight = 130;  ///< expected milliseconds
+    std::uint64_t weight = 70;  ///< expected milliseconds of a call of `measure`
+    bool long_run = false;  ///< whether one call of `measure` has to do; otherwise there are two
 };
 
 /// A plot: FILE.svg.
@@ -67,6 +68,9 @@ struct RungLadder {
     std::string error_key = "error";  ///< in the columns max_… and rms_…
     std::vector<RungFigure> figures;
 };
+
+/// Seconds for which a call of `measure` repeats what it times.
+inline constexpr double kRungWindow = 0.06;
 
 LadderWork plan_rung_ladder(RungLadder ladder);
 

@@ -164,7 +164,7 @@ RungLadder brdf_lookup_ladder() {
             figure.rungs.push_back(
                 {std::string(kBrdfLookups[i].name), fmt::format("roughness {}", roughness),
                  fmt::format("{}", roughness), i,
-                 [=] { return measure_lookup(*metal, kBrdfLookups[i].method); }, 0, 300});
+                 [=] { return measure_lookup(*metal, kBrdfLookups[i].method); }});
         }
     }
     ladder.figures = {std::move(figure)};
@@ -195,7 +195,7 @@ RungLadder brdf_fog_ladder() {
     for (const int order : {8, 16, 32, 64}) {
         figure.rungs.push_back({"bands", order_name(order), std::to_string(order), 0,
                                 [=] { return measure_fog(*metal, order); }, 0,
-                                static_cast<std::uint64_t>(1500 + 25 * order)});
+                                static_cast<std::uint64_t>(1500 + 25 * order), true});
     }
     ladder.figures = {std::move(figure)};
     return ladder;
