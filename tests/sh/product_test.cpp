@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
 #include <random>
 #include <string>
 #include <vector>
@@ -16,7 +17,6 @@
 #include "sh/index.h"
 #include "sh/product_matrix.h"
 #include "sh/quadrature.h"
-#include "sh/rotation.h"
 #include "tests/medium/batch_check.h"
 
 namespace airlight {

@@ -16,7 +16,6 @@
 #include "sh/basis.h"
 #include "sh/index.h"
 #include "sh/quadrature.h"
-#include "sh/zonal.h"
 #include "tests/medium/batch_check.h"
 
 namespace airlight {
