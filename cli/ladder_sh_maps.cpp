@@ -234,9 +234,8 @@ RungLadder sh_projection_ladder() {
     ladder.text = fmt::format(
         "<p>{0} × {1} RGB float maps to the order that labels the dot, planning included. First "
         "the sky with a one-pixel sun that the ladder of fog has, which is constant within its "
-        "pixels: exact "
-        "are the integrals over the pixels, whose bound the tests show is drawn. Then a function "
-        "of 100 bands, sampled at "
+        "pixels: exact are the integrals over them, which <code>pixel-means</code> computes; the "
+        "bound that tests hold it to is drawn. Then a function of 100 bands, sampled at "
         "the centres of the pixels: exact are its coefficients. What is exact for one is not for "
         "the other. The error of a coefficient is divided by the largest one of its channel; times "
         "are per pixel of three channels. Pixels and batches sum over the centres of pixels times "
