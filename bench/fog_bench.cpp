@@ -11,7 +11,6 @@
 // 2 of that.
 #include <fmt/format.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -21,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/rounds.h"
 #include "bench/sharp_pairs.h"
 #include "cli/ladder_map.h"
 #include "core/memory.h"
@@ -40,10 +40,6 @@ struct BenchOptions {
 struct Contender {
     std::string name;
     FogOptions options;
-};
-
-struct Seconds {
-    double wall = 0, cpu = 0;
 };
 
 // Rings cost rows^2 columns: minutes on large maps.
@@ -71,25 +67,6 @@ Image fog(const Image& map, const FogOptions& options) {
     Image out = scattered_light(map, plan);
     add_direct_light(map, plan, out);
     return out;
-}
-
-double now(clockid_t clock) {
-    timespec time = {};
-    clock_gettime(clock, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-template <class Run>
-Seconds measure(const Run& run) {
-    const Seconds start = {now(CLOCK_MONOTONIC), now(CLOCK_PROCESS_CPUTIME_ID)};
-    run();
-    return {now(CLOCK_MONOTONIC) - start.wall, now(CLOCK_PROCESS_CPUTIME_ID) - start.cpu};
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t middle = values.size() / 2;
-    return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
 // Runs in a child, which must be made before this process has threads.
@@ -141,7 +118,10 @@ void run(const BenchOptions& bench) {
         std::vector<Seconds> seconds;
         if (first == 1) {
             SharpPairs sharp(bench.height, bench.width, bench.threads);
-            seconds.push_back(measure([&] { sharp.run(); }));
+            seconds.push_back(measure([&] {
+                sharp.analyze();
+                sharp.synthesize();
+            }));
         }
         for (const Contender& contender : list) {
             seconds.push_back(measure([&] { fog(map, contender.options); }));

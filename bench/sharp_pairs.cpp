@@ -25,6 +25,8 @@ struct SharpPairs::Impl {
     int flags = SHARP_DP;
     std::vector<double> in, out;
     std::vector<std::complex<double>> coefficients;
+
+    void execute(sharp_jobtype job, std::vector<double>& map);
 };
 
 bool SharpPairs::available() {
@@ -49,16 +51,20 @@ SharpPairs::~SharpPairs() {
     sharp_destroy_alm_info(impl_->bands);
 }
 
-void SharpPairs::run() {
-    void* in = impl_->in.data();
-    void* out = impl_->out.data();
-    void* coefficients = impl_->coefficients.data();
+void SharpPairs::Impl::execute(sharp_jobtype job, std::vector<double>& map) {
+    void* values = map.data();
+    void* bands_of_map = coefficients.data();
     for (int channel = 0; channel < 3; ++channel) {
-        sharp_execute(SHARP_MAP2ALM, 0, &coefficients, &in, impl_->grid, impl_->bands, impl_->flags,
-                      nullptr, nullptr);
-        sharp_execute(SHARP_ALM2MAP, 0, &coefficients, &out, impl_->grid, impl_->bands,
-                      impl_->flags, nullptr, nullptr);
+        sharp_execute(job, 0, &bands_of_map, &values, grid, bands, flags, nullptr, nullptr);
     }
+}
+
+void SharpPairs::analyze() {
+    impl_->execute(SHARP_MAP2ALM, impl_->in);
+}
+
+void SharpPairs::synthesize() {
+    impl_->execute(SHARP_ALM2MAP, impl_->out);
 }
 
 #else
@@ -75,7 +81,11 @@ SharpPairs::SharpPairs(int, int, int) {
 
 SharpPairs::~SharpPairs() = default;
 
-void SharpPairs::run() {
+void SharpPairs::analyze() {
+    assert(false);
+}
+
+void SharpPairs::synthesize() {
     assert(false);
 }
 

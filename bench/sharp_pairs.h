@@ -6,8 +6,9 @@
 
 namespace airlight {
 
-/// Three analysis and synthesis pairs in double at lmax = rows - 1, on the grid of a lat-long map's
-/// pixel centres: what a convolution in bands of an RGB map costs by libsharp.
+/// Three transforms, for R, G and B, in double at lmax = rows - 1 on the grid of a lat-long map's
+/// pixel centres. Their analysis is by Fejer's weights, exact for lmax < rows / 2 only. Both
+/// together are what a convolution in bands of an RGB map costs by libsharp.
 class SharpPairs {
   public:
     /// False where the build has no libsharp; nothing else may be called then.
@@ -16,7 +17,8 @@ class SharpPairs {
     SharpPairs(int rows, int columns, int threads);
     ~SharpPairs();
 
-    void run();
+    void analyze();
+    void synthesize();
 
   private:
     struct Impl;
