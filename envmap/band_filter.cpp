@@ -103,13 +103,17 @@ void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels,
     const std::size_t rows = map.height, columns = map.width, channels = kernels.size();
     const int lmax = static_cast<int>(kernels.front().eigenvalues->size()) - 1;
     assert(lmax < map.height && 2 * lmax < map.width);
-    const RingFft fft(columns);
-    RowSpectra spectra(rows, static_cast<std::size_t>(lmax) + 1, channels);
-    spectra.forward(fft, [&](std::size_t row, std::size_t channel, double* ring) {
-        const float* in = map.row(static_cast<int>(row)) + kernels[channel].channel;
-        for (std::size_t k = 0; k < columns; ++k) ring[k] = in[k * map.channels];
-        if (progress && channel == 0) progress->tick();
-    });
+    const LaneFft<double> fft(columns);
+    RowSpectra<double> spectra(rows, static_cast<std::size_t>(lmax) + 1, channels);
+    const auto tick = [&](std::size_t count) {
+        if (progress) progress->tick(count);
+    };
+    spectra.forward(
+        fft, map.channels,
+        [&](std::size_t row, std::size_t channel) {
+            return map.row(static_cast<int>(row)) + kernels[channel].channel;
+        },
+        tick);
 
     std::vector<double> weight(rows);
     for (std::size_t row = 0; row < rows; ++row) {
@@ -141,7 +145,7 @@ void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels,
             double* value = coefficients.data();
             for (std::size_t l = m; l <= static_cast<std::size_t>(lmax); ++l) {
                 for (const BandKernel& kernel : kernels) {
-                    const double factor = scale * (*kernel.eigenvalues)[l];
+                    const double factor = scale * kernel.amplitude * (*kernel.eigenvalues)[l];
                     *value++ *= factor;
                     *value++ *= factor;
                 }
@@ -156,14 +160,12 @@ void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels,
         if (progress) progress->tick(m1 - m0);
     });
 
-    spectra.inverse(fft, [&](std::size_t row, std::size_t channel, const double* ring) {
-        const BandKernel& kernel = kernels[channel];
-        float* pixel = out.row(static_cast<int>(row)) + kernel.channel;
-        for (std::size_t k = 0; k < columns; ++k, pixel += out.channels) {
-            *pixel = static_cast<float>(kernel.amplitude * ring[k]);
-        }
-        if (progress && channel == 0) progress->tick();
-    });
+    spectra.inverse(
+        fft, out.channels,
+        [&](std::size_t row, std::size_t channel) {
+            return out.row(static_cast<int>(row)) + kernels[channel].channel;
+        },
+        tick);
 }
 
 double band_filter_cost(int rows, int columns, int channels, int lmax) {

@@ -13,8 +13,9 @@ std::vector<double> northern_colatitudes(std::size_t rows) {
     return colatitude;
 }
 
-void fold_rows(const double* values, const double* weight, std::size_t rows, std::size_t padded,
-               double* even, double* odd) {
+template <class T>
+void fold_rows(const T* values, const T* weight, std::size_t rows, std::size_t padded, T* even,
+               T* odd) {
     const std::size_t north = (rows + 1) / 2;
     for (std::size_t f = 0; f < north; ++f) {
         const std::size_t n = north - 1 - f, s = rows - 1 - n;
@@ -26,11 +27,12 @@ void fold_rows(const double* values, const double* weight, std::size_t rows, std
             odd[f] = weight[n] * values[n] - weight[s] * values[s];
         }
     }
-    std::fill(even + north, even + padded, 0.0);
-    std::fill(odd + north, odd + padded, 0.0);
+    std::fill(even + north, even + padded, T(0));
+    std::fill(odd + north, odd + padded, T(0));
 }
 
-void unfold_rows(const double* even, const double* odd, std::size_t rows, double* values) {
+template <class T>
+void unfold_rows(const T* even, const T* odd, std::size_t rows, T* values) {
     const std::size_t north = (rows + 1) / 2;
     for (std::size_t f = 0; f < north; ++f) {
         const std::size_t n = north - 1 - f;
@@ -38,5 +40,10 @@ void unfold_rows(const double* even, const double* odd, std::size_t rows, double
         values[n] = even[f] + odd[f];
     }
 }
+
+template void fold_rows(const float*, const float*, std::size_t, std::size_t, float*, float*);
+template void fold_rows(const double*, const double*, std::size_t, std::size_t, double*, double*);
+template void unfold_rows(const float*, const float*, std::size_t, float*);
+template void unfold_rows(const double*, const double*, std::size_t, double*);
 
 }  // namespace airlight
