@@ -18,18 +18,30 @@ namespace {
 
 constexpr std::size_t kBlock = 8;       // bands generated at a time
 constexpr std::size_t kRowPadding = 8;  // the widest vector in use, in doubles
-constexpr double kInverseStep = 0x1p-512, kTooLarge = 0x1p256;
-constexpr double kNever = -1e9;  // exponent of a padding row
+constexpr int kStepLog2 = 192;          // rows far below the others are kept times 2^(192 k)
+constexpr double kInverseStep = 0x1p-192, kTooLarge = 0x1p96;
+constexpr double kNegligible = 75;  // |P_lm| < e^-75 = 2^-108 adds nothing
+constexpr double kNever = -1e9;     // exponent of a padding row
+
+// Rows at a time, so that the functions and the folded rows stay in the first-level cache.
+constexpr std::size_t kAnalysisRows = 256, kSynthesisRows = 128;
 
 // One m: rows with their recurrence state, and where block i of the bands goes.
 struct Block {
     const double* versine;  // 1 - cos theta
     double* value;          // P_{l-1}, mantissas
     double* step;           // P_{l-1} - P_{l-2}, mantissas
-    double* exponent;       // k of the factor 2^(512 k), per row: 0 is in range, below 0 negligible
+    double* exponent;       // k of the factor 2^(192 k), per row: 0 is in range, below 0 negligible
     const double* recurrence;  // (bands, 3): a, b, a - b - 1
     double* functions;         // (kBlock, rows)
     std::size_t rows;
+    std::size_t folded_stride;  // from one component of the folded rows to the next
+
+    // `count` rows from `first` on.
+    Block part(std::size_t first, std::size_t count) const {
+        return {versine + first, value + first, step + first, exponent + first,
+                recurrence,      functions,     count,        folded_stride};
+    }
 };
 
 }  // namespace
@@ -145,10 +157,11 @@ HWY_ATTR std::size_t generate(const Block& b, std::size_t* in_range) {
     return usable;
 }
 
-// coefficients[(first + 2 t) * stride + c] = sum over rows of functions * folded, t < kBandTile.
+// coefficients[(first + 2 t) * stride + c] += sum over rows of functions * folded, t < kBandTile.
 template <int kComponents>
 HWY_ATTR void analyze_tile(const double* functions, std::size_t rows, std::size_t usable,
-                           const double* folded, double* coefficients, std::size_t stride) {
+                           const double* folded, std::size_t folded_stride, double* coefficients,
+                           std::size_t stride) {
     const Tag d;
     const std::size_t lanes = hn::Lanes(d);
     Vec sum[kBandTile][kComponents];
@@ -159,13 +172,13 @@ HWY_ATTR void analyze_tile(const double* functions, std::size_t rows, std::size_
         Vec p[kBandTile];
         for (int t = 0; t < kBandTile; ++t) p[t] = hn::Load(d, functions + 2 * t * rows + row);
         for (int c = 0; c < kComponents; ++c) {
-            const Vec f = hn::Load(d, folded + c * rows + row);
+            const Vec f = hn::Load(d, folded + c * folded_stride + row);
             for (int t = 0; t < kBandTile; ++t) sum[t][c] = hn::MulAdd(p[t], f, sum[t][c]);
         }
     }
     for (int t = 0; t < kBandTile; ++t) {
         for (int c = 0; c < kComponents; ++c) {
-            coefficients[2 * t * stride + c] = hn::GetLane(hn::SumOfLanes(d, sum[t][c]));
+            coefficients[2 * t * stride + c] += hn::GetLane(hn::SumOfLanes(d, sum[t][c]));
         }
     }
 }
@@ -174,23 +187,24 @@ template <int kComponents>
 HWY_ATTR void analyze_block(const Block& b, std::size_t usable, std::size_t stride,
                             const double* even, const double* odd, double* coefficients) {
     for (std::size_t i = 0; i < kBlock; i += 2 * kBandTile) {
-        analyze_tile<kComponents>(b.functions + i * b.rows, b.rows, usable, even,
+        analyze_tile<kComponents>(b.functions + i * b.rows, b.rows, usable, even, b.folded_stride,
                                   coefficients + i * stride, stride);
         analyze_tile<kComponents>(b.functions + (i + 1) * b.rows, b.rows, usable, odd,
-                                  coefficients + (i + 1) * stride, stride);
+                                  b.folded_stride, coefficients + (i + 1) * stride, stride);
     }
 }
 
 // folded += functions^T coefficients for the kBlock / 2 bands of one parity.
 template <int kComponents, int kVectors>
 HWY_INLINE void synthesize_tile(const double* functions, std::size_t rows, std::size_t row,
-                                double* folded, const double* coefficients, std::size_t stride) {
+                                double* folded, std::size_t folded_stride,
+                                const double* coefficients, std::size_t stride) {
     const Tag d;
     const std::size_t lanes = hn::Lanes(d);
     Vec sum[kVectors][kComponents];
     for (int v = 0; v < kVectors; ++v) {
         for (int c = 0; c < kComponents; ++c) {
-            sum[v][c] = hn::Load(d, folded + c * rows + row + v * lanes);
+            sum[v][c] = hn::Load(d, folded + c * folded_stride + row + v * lanes);
         }
     }
     for (std::size_t i = 0; i < kBlock; i += 2) {
@@ -204,7 +218,7 @@ HWY_INLINE void synthesize_tile(const double* functions, std::size_t rows, std::
     }
     for (int v = 0; v < kVectors; ++v) {
         for (int c = 0; c < kComponents; ++c) {
-            hn::Store(sum[v][c], d, folded + c * rows + row + v * lanes);
+            hn::Store(sum[v][c], d, folded + c * folded_stride + row + v * lanes);
         }
     }
 }
@@ -220,10 +234,12 @@ HWY_ATTR void synthesize_block(const Block& b, std::size_t usable, std::size_t s
         double* folded = parity == 0 ? even : odd;
         std::size_t row = 0;
         for (; row + kRowTile * lanes <= usable; row += kRowTile * lanes) {
-            synthesize_tile<kComponents, kRowTile>(functions, b.rows, row, folded, bands, stride);
+            synthesize_tile<kComponents, kRowTile>(functions, b.rows, row, folded, b.folded_stride,
+                                                   bands, stride);
         }
         for (; row < usable; row += lanes) {
-            synthesize_tile<kComponents, 1>(functions, b.rows, row, folded, bands, stride);
+            synthesize_tile<kComponents, 1>(functions, b.rows, row, folded, b.folded_stride, bands,
+                                            stride);
         }
     }
 }
@@ -231,12 +247,12 @@ HWY_ATTR void synthesize_block(const Block& b, std::size_t usable, std::size_t s
 template <int kComponents>
 void dispatch_analysis(const Block& b, std::size_t usable, int components, int first,
                        const double* even, const double* odd, double* coefficients) {
-    analyze_block<kComponents>(b, usable, components, even + first * b.rows, odd + first * b.rows,
-                               coefficients + first);
+    analyze_block<kComponents>(b, usable, components, even + first * b.folded_stride,
+                               odd + first * b.folded_stride, coefficients + first);
 }
 
-// Runs over all blocks of bands of one m.
-HWY_ATTR void run_analysis(Block b, std::size_t bands, int components, const double* even,
+// Runs over all blocks of bands of one m, for some of its rows.
+HWY_ATTR void analyze_part(Block b, std::size_t bands, int components, const double* even,
                            const double* odd, double* coefficients) {
     std::size_t in_range = 0;
     for (std::size_t l = 0; l < bands; l += kBlock, b.recurrence += 3 * kBlock) {
@@ -258,11 +274,11 @@ template <int kComponents>
 void dispatch_synthesis(const Block& b, std::size_t usable, int components, int first,
                         const double* coefficients, double* even, double* odd) {
     synthesize_block<kComponents>(b, usable, components, coefficients + first,
-                                  even + first * b.rows, odd + first * b.rows);
+                                  even + first * b.folded_stride, odd + first * b.folded_stride);
 }
 
-HWY_ATTR void run_synthesis(Block b, std::size_t bands, int components, const double* coefficients,
-                            double* even, double* odd) {
+HWY_ATTR void synthesize_part(Block b, std::size_t bands, int components,
+                              const double* coefficients, double* even, double* odd) {
     std::size_t in_range = 0;
     for (std::size_t l = 0; l < bands; l += kBlock, b.recurrence += 3 * kBlock) {
         const std::size_t usable = generate(b, &in_range);
@@ -276,6 +292,22 @@ HWY_ATTR void run_synthesis(Block b, std::size_t bands, int components, const do
             c += 4;
         }
         if (c + 2 <= components) dispatch_synthesis<2>(b, usable, components, c, in, even, odd);
+    }
+}
+
+HWY_ATTR void run_analysis(const Block& b, std::size_t bands, int components, const double* even,
+                           const double* odd, double* coefficients) {
+    for (std::size_t row = 0; row < b.rows; row += kAnalysisRows) {
+        analyze_part(b.part(row, std::min(kAnalysisRows, b.rows - row)), bands, components,
+                     even + row, odd + row, coefficients);
+    }
+}
+
+HWY_ATTR void run_synthesis(const Block& b, std::size_t bands, int components,
+                            const double* coefficients, double* even, double* odd) {
+    for (std::size_t row = 0; row < b.rows; row += kSynthesisRows) {
+        synthesize_part(b.part(row, std::min(kSynthesisRows, b.rows - row)), bands, components,
+                        coefficients, even + row, odd + row);
     }
 }
 
@@ -305,6 +337,7 @@ LegendreStage::LegendreStage(const std::vector<double>& colatitude, int lmax)
             x < 0.7L ? 0.5L * std::log1p(-x * x) : std::log(std::sin(theta));
         log2_sin_[r] = log_sin * 1.44269504088896340735992468100189214L;
     }
+    for (int l = 0; l <= lmax; ++l) root_.push_back(std::sqrt(2.0L * l + 1));
     seed_.resize(static_cast<std::size_t>(lmax) + 1);
     long double squared = 0.0795774715459476678844418816862571810L;  // 1 / (4 pi)
     for (int m = 0; m <= lmax; ++m) {
@@ -325,48 +358,80 @@ void LegendreStage::prepare(int m, Workspace& work) const {
     work.recurrence.assign(3 * padded_bands(m), 0.0);
     work.recurrence[1] = 1.0;  // the first step, from 0, gives the seed itself
     const long double mm = static_cast<long double>(m) * m;
+    long double root = 0;  // of l^2 - m^2, for the degree before
     for (std::size_t i = 1; i < bands; ++i) {
-        const long double l = static_cast<long double>(m) + static_cast<long double>(i);
-        const long double scale = (2 * l + 1) / (l * l - mm);
-        const long double a = std::sqrt(scale * (2 * l - 1));
-        const long double b =
-            i == 1 ? 0.0L : std::sqrt(scale * ((l - 1) * (l - 1) - mm) / (2 * l - 3));
+        const std::size_t l = static_cast<std::size_t>(m) + i;
+        const long double square = static_cast<long double>(l) * static_cast<long double>(l) - mm;
+        const long double inverse_root = 1 / std::sqrt(square);
+        const long double a = root_[l] * root_[l - 1] * inverse_root;
+        const long double b = i == 1 ? 0 : root_[l] / root_[l - 2] * inverse_root * root;
+        root = square * inverse_root;
         work.recurrence[3 * i] = static_cast<double>(a);
         work.recurrence[3 * i + 1] = static_cast<double>(b);
         work.recurrence[3 * i + 2] = static_cast<double>(a - b - 1);
     }
-    const std::size_t padded = padded_rows();
-    work.seed.assign(padded, 0.0);
-    work.seed_exponent.assign(padded, kNever);
-    for (std::size_t r = 0; r < rows_; ++r) {
-        const long double exponent = m * log2_sin_[r];
-        // Whole steps of 512 leave a mantissa in [2^-256, 2^256].
-        const double steps =
-            exponent < -256 ? -std::ceil((static_cast<double>(-exponent) - 256) / 512) : 0.0;
-        work.seed_exponent[r] = steps;
-        const double rest = static_cast<double>(exponent - 512 * static_cast<long double>(steps));
-        const double fraction = static_cast<double>(
-            exponent - 512 * static_cast<long double>(steps) - std::floor(rest));
-        work.seed[r] =
-            std::ldexp(std::exp2(fraction) * seed_[m], static_cast<int>(std::floor(rest)));
+    const std::size_t active = active_rows(m);
+    work.rows = (active + kRowPadding - 1) / kRowPadding * kRowPadding;
+    for (AlignedVector<double>* rows :
+         {&work.seed, &work.seed_exponent, &work.value, &work.step, &work.exponent}) {
+        rows->resize(padded_rows());
     }
-    work.value.resize(padded);
-    work.functions.resize(kBlock * padded);
+    work.functions.resize(kBlock * std::min(padded_rows(), kAnalysisRows));
+    for (std::size_t r = 0; r < active; ++r) {
+        const long double exponent = m * log2_sin_[r];
+        // Whole steps leave a mantissa in [2^-96, 2^96].
+        const double steps =
+            exponent < -kStepLog2 / 2
+                ? -std::ceil((static_cast<double>(-exponent) - kStepLog2 / 2) / kStepLog2)
+                : 0.0;
+        work.seed_exponent[r] = steps;
+        const long double rest = exponent - kStepLog2 * static_cast<long double>(steps);
+        const double whole = std::floor(static_cast<double>(rest));
+        const double fraction = static_cast<double>(rest - whole);
+        work.seed[r] = std::ldexp(std::exp2(fraction) * seed_[m], static_cast<int>(whole));
+    }
+    std::fill(work.seed.begin() + active, work.seed.begin() + work.rows, 0.0);
+    std::fill(work.seed_exponent.begin() + active, work.seed_exponent.begin() + work.rows, kNever);
+}
+
+// P_lm decays from its turning point sin theta_t = m / (l + 1/2) towards the pole like exp(-S),
+// S = m acosh(m cot theta / c) - (l + 1/2) acosh((l + 1/2) cos theta / c) with
+// c = sqrt((l + 1/2)^2 - m^2) (WKB), and grows with l.
+std::size_t LegendreStage::active_rows(int m) const {
+    const double degree = lmax_ + 0.5, c = std::sqrt((degree - m) * (degree + m));
+    const auto negligible = [&](std::size_t r) {
+        const double cosine = 1 - versine_[r], sine = std::sqrt(versine_[r] * (1 + cosine));
+        if (degree * sine >= m) return false;
+        const double decay =
+            m * std::acosh(m * cosine / (sine * c)) - degree * std::acosh(degree * cosine / c);
+        return decay > kNegligible;
+    };
+    std::size_t first = 0, last = rows_;
+    while (first < last) {
+        const std::size_t middle = (first + last) / 2;
+        if (negligible(middle)) {
+            last = middle;
+        } else {
+            first = middle + 1;
+        }
+    }
+    return first;
 }
 
 namespace {
 
 // Rewinds the recurrence of the prepared order to its first band.
 Block rewind(const double* versine, std::size_t rows, LegendreStage::Workspace& work) {
-    std::fill(work.value.begin(), work.value.end(), 0.0);
-    work.step = work.seed;
-    work.exponent = work.seed_exponent;
+    std::fill_n(work.value.data(), work.rows, 0.0);
+    std::copy_n(work.seed.data(), work.rows, work.step.data());
+    std::copy_n(work.seed_exponent.data(), work.rows, work.exponent.data());
     return {versine,
             work.value.data(),
             work.step.data(),
             work.exponent.data(),
             work.recurrence.data(),
             work.functions.data(),
+            work.rows,
             rows};
 }
 
@@ -377,6 +442,7 @@ void LegendreStage::analyze(int components, const double* even, const double* od
     assert(components > 0 && components % 2 == 0);
     const std::size_t bands = static_cast<std::size_t>(lmax_ - work.m) + 1;
     const Block block = rewind(versine_.data(), padded_rows(), work);
+    std::fill_n(coefficients, padded_bands(work.m) * components, 0.0);
     HWY_DYNAMIC_DISPATCH(run_analysis)(block, bands, components, even, odd, coefficients);
 }
 

@@ -23,8 +23,8 @@ namespace airlight {
 /// Method: the recurrence in l, carried by the differences P_l - P_{l-1} so that rows at the poles
 /// keep their accuracy, in rows side by side (Highway, run-time dispatch), four bands of each
 /// parity at a time, then small matrix products with all components. Seeds sin^m are kept as
-/// mantissa * 2^(512 k): a row joins the sums once |P_lm| exceeds about 2^-256, so no order
-/// underflows.
+/// mantissa * 2^(192 k): a row joins the sums once |P_lm| exceeds about 2^-96, so no order
+/// underflows, and rows beside the poles where no band of an order does so are left out.
 class LegendreStage {
   public:
     /// `colatitude` holds the rows of the northern hemisphere in (0, pi/2], nearest the equator
@@ -40,6 +40,7 @@ class LegendreStage {
     /// The recurrence of one order and the scratch memory of one thread.
     struct Workspace {
         int m = 0;
+        std::size_t rows = 0;  // those where any band counts, padded
         AlignedVector<double> recurrence, seed, seed_exponent;
         AlignedVector<double> value, step, exponent, functions;
     };
@@ -56,11 +57,15 @@ class LegendreStage {
                     Workspace& work) const;
 
   private:
+    // The rows, from the equator on, where the order is not negligible in every band.
+    std::size_t active_rows(int m) const;
+
     int lmax_;
     std::size_t rows_;
     AlignedVector<double> versine_;  // 1 - cos theta
     std::vector<long double> log2_sin_;
-    std::vector<double> seed_;  // P_mm / sin^m for m = 0 … lmax
+    std::vector<long double> root_;  // sqrt(2 l + 1)
+    std::vector<double> seed_;       // P_mm / sin^m for m = 0 … lmax
 };
 
 }  // namespace airlight

@@ -21,7 +21,11 @@ template <class T>
 class RowSpectra {
   public:
     RowSpectra(std::size_t rows, std::size_t orders, std::size_t channels)
-        : rows_(rows), orders_(orders), channels_(channels), data_(rows * orders * channels * 2) {}
+        : rows_(rows),
+          row_stride_((rows / kLanes + 1) * kLanes | kLanes),
+          orders_(orders),
+          channels_(channels),
+          data_(row_stride_ * orders * channels * 2) {}
 
     std::size_t rows() const { return rows_; }
     std::size_t orders() const { return orders_; }
@@ -30,10 +34,10 @@ class RowSpectra {
 
     /// The rows of component c (2 * channel for the real part, + 1 for the imaginary) of order m.
     T* at(std::size_t m, std::size_t component) {
-        return data_.data() + (m * components() + component) * rows_;
+        return data_.data() + (m * components() + component) * row_stride_;
     }
     const T* at(std::size_t m, std::size_t component) const {
-        return data_.data() + (m * components() + component) * rows_;
+        return data_.data() + (m * components() + component) * row_stride_;
     }
 
     /// Called with a number of rows whenever so many of all channels are done; may be empty.
@@ -60,7 +64,59 @@ class RowSpectra {
     // their elements.
     static constexpr std::size_t kColumns = 64;
 
-    std::size_t rows_, orders_, channels_;
+    // Blocks of one task, which share their buffers.
+    static constexpr std::size_t kTaskBlocks = 4;
+    // Orders lie pages apart; that many are fetched ahead.
+    static constexpr std::size_t kAhead = 8;
+
+    // The elements of one block of rows in every channel, and one more to transform into.
+    class Buffers {
+      public:
+        Buffers(std::size_t size, std::size_t channels) {
+            for (std::size_t i = 0; i <= channels; ++i) buffers_.emplace_back(size);
+        }
+        T* data(std::size_t i) { return buffers_[i].data(); }
+        void exchange(std::size_t i, std::size_t j) { buffers_[i].swap(buffers_[j]); }
+        void clear() {
+            for (AlignedVector<T>& buffer : buffers_) std::fill(buffer.begin(), buffer.end(), T(0));
+        }
+
+      private:
+        std::vector<AlignedVector<T>> buffers_;
+    };
+
+    // Calls body(buffers, begin, count) for all blocks of rows.
+    template <class Body>
+    void for_each_block(const LaneFft<T>& fft, const Body& body) const {
+        parallel_blocks(rows_, kTaskBlocks * kRowBlock, [&](std::size_t begin, std::size_t end) {
+            Buffers buffers(fft.buffer_size(), channels_);
+            for (; begin < end; begin += kRowBlock) {
+                body(buffers, begin, std::min(kRowBlock, end - begin));
+            }
+        });
+    }
+
+    void prefetch(std::size_t m, std::size_t channel, std::size_t row) const {
+        if (m >= orders_) return;
+        for (std::size_t part = 0; part < 2; ++part) {
+            const T* rows = at(m, 2 * channel + part) + row;
+            __builtin_prefetch(rows);
+            __builtin_prefetch(rows + kLanes);
+        }
+    }
+
+    // All rows of a block but the last one are copied without a loop.
+    static void copy_rows(const T* from, std::size_t count, T* to) {
+        if (count == kRowBlock) {
+            std::copy_n(from, kRowBlock, to);
+        } else {
+            std::copy_n(from, count, to);
+        }
+    }
+
+    // An odd number of cache lines keeps the rows of neighbouring orders, which lie 2^n apart in a
+    // usual map, out of one another's cache sets.
+    std::size_t rows_, row_stride_, orders_, channels_;
     AlignedVector<T> data_;
 };
 
@@ -84,22 +140,23 @@ template <class RowOf>
 void RowSpectra<T>::forward(const LaneFft<T>& fft, std::size_t stride, const RowOf& row_of,
                             const Tick& tick) {
     const std::size_t n = fft.length(), used = std::min(orders_, n / 2 + 1);
-    parallel_blocks(rows_, kRowBlock, [&](std::size_t begin, std::size_t end) {
-        AlignedVector<T> data(fft.buffer_size()), scratch(fft.buffer_size());
-        const std::size_t count = end - begin;
-        for (std::size_t channel = 0; channel < channels_; ++channel) {
-            if (count < kRowBlock) std::fill(data.begin(), data.end(), T(0));
-            for (std::size_t first = 0; first < n; first += kColumns) {
-                const std::size_t last = std::min(n, first + kColumns);
-                for (std::size_t r = 0; r < count; ++r) {
+    for_each_block(fft, [&](Buffers& buffers, std::size_t begin, std::size_t count) {
+        if (count < kRowBlock) buffers.clear();
+        for (std::size_t first = 0; first < n; first += kColumns) {
+            const std::size_t last = std::min(n, first + kColumns);
+            for (std::size_t r = 0; r < count; ++r) {
+                for (std::size_t channel = 0; channel < channels_; ++channel) {
                     const auto* row = row_of(begin + r, channel);
-                    T* to = data.data() + r;
+                    T* to = buffers.data(channel) + r;
                     for (std::size_t k = first; k < last; ++k) {
                         to[k * kRowBlock] = static_cast<T>(row[k * stride]);
                     }
                 }
             }
-            const T* spectrum = fft.transform(data.data(), false, scratch.data());
+        }
+        for (std::size_t channel = 0; channel < channels_; ++channel) {
+            const T* spectrum =
+                fft.transform(buffers.data(channel), false, buffers.data(channels_));
             for (std::size_t m = 0; m < used; ++m) {
                 // With Z of a + i b: A_m = (Z_m + conj Z_-m) / 2, B_m = (Z_m - conj Z_-m) / 2i.
                 const T* z = spectrum + m * kRowBlock;
@@ -111,8 +168,8 @@ void RowSpectra<T>::forward(const LaneFft<T>& fft, std::size_t stride, const Row
                     re[kLanes + lane] = (z[kLanes + lane] + y[kLanes + lane]) / 2;
                     im[kLanes + lane] = (y[lane] - z[lane]) / 2;
                 }
-                std::copy_n(re, count, at(m, 2 * channel) + begin);
-                std::copy_n(im, count, at(m, 2 * channel + 1) + begin);
+                copy_rows(re, count, at(m, 2 * channel) + begin);
+                copy_rows(im, count, at(m, 2 * channel + 1) + begin);
             }
             // Orders past the ring's last bin do not occur.
             for (std::size_t m = used; m < orders_; ++m) {
@@ -129,37 +186,46 @@ template <class RowOf>
 void RowSpectra<T>::inverse(const LaneFft<T>& fft, std::size_t stride, const RowOf& row_of,
                             const Tick& tick) const {
     const std::size_t n = fft.length(), used = std::min(orders_, n / 2 + 1);
-    parallel_blocks(rows_, kRowBlock, [&](std::size_t begin, std::size_t end) {
-        AlignedVector<T> data(fft.buffer_size()), scratch(fft.buffer_size());
-        const std::size_t count = end - begin;
+    for_each_block(fft, [&](Buffers& buffers, std::size_t begin, std::size_t count) {
+        std::vector<const T*> rings(channels_);
         for (std::size_t channel = 0; channel < channels_; ++channel) {
-            for (std::size_t m = used; m + used <= n; ++m) {
-                std::fill_n(data.data() + m * kRowBlock, kRowBlock, T(0));
-            }
+            T* data = buffers.data(channel);
             T re[kRowBlock] = {}, im[kRowBlock] = {};
             for (std::size_t m = 0; m < used; ++m) {
-                std::copy_n(at(m, 2 * channel) + begin, count, re);
+                prefetch(m + kAhead, channel, begin);
+                copy_rows(at(m, 2 * channel) + begin, count, re);
                 const bool real = m == 0 || 2 * m == n;
-                if (!real) std::copy_n(at(m, 2 * channel + 1) + begin, count, im);
-                // Z_m = A_m + i B_m and Z_-m = conj A_m + i conj B_m.
-                T* z = data.data() + m * kRowBlock;
-                T* y = data.data() + (n - m) % n * kRowBlock;
-                for (std::size_t lane = 0; lane < kLanes; ++lane) {
-                    const T b_im = real ? T(0) : im[kLanes + lane], a_im = real ? T(0) : im[lane];
-                    y[lane] = re[lane] + b_im;
-                    y[kLanes + lane] = re[kLanes + lane] - a_im;
-                    z[lane] = re[lane] - b_im;
-                    z[kLanes + lane] = re[kLanes + lane] + a_im;
+                if (real) {
+                    std::fill_n(im, kRowBlock, T(0));
+                } else {
+                    copy_rows(at(m, 2 * channel + 1) + begin, count, im);
                 }
+                // Z_m = A_m + i B_m and Z_-m = conj A_m + i conj B_m.
+                T z[kRowBlock], y[kRowBlock];
+                for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                    y[lane] = re[lane] + im[kLanes + lane];
+                    y[kLanes + lane] = re[kLanes + lane] - im[lane];
+                    z[lane] = re[lane] - im[kLanes + lane];
+                    z[kLanes + lane] = re[kLanes + lane] + im[lane];
+                }
+                std::copy_n(y, kRowBlock, data + (n - m) % n * kRowBlock);
+                std::copy_n(z, kRowBlock, data + m * kRowBlock);
             }
-            const T* rings = fft.transform(data.data(), true, scratch.data());
-            for (std::size_t first = 0; first < n; first += kColumns) {
-                const std::size_t last = std::min(n, first + kColumns);
-                for (std::size_t r = 0; r < count; ++r) {
+            for (std::size_t m = used; m + used <= n; ++m) {
+                std::fill_n(data + m * kRowBlock, kRowBlock, T(0));
+            }
+            rings[channel] = fft.transform(data, true, buffers.data(channels_));
+            if (rings[channel] != data) buffers.exchange(channel, channels_);
+        }
+        for (std::size_t first = 0; first < n; first += kColumns) {
+            const std::size_t last = std::min(n, first + kColumns);
+            for (std::size_t r = 0; r < count; ++r) {
+                for (std::size_t channel = 0; channel < channels_; ++channel) {
                     auto* row = row_of(begin + r, channel);
+                    const T* from = rings[channel] + r;
                     for (std::size_t k = first; k < last; ++k) {
                         row[k * stride] = static_cast<std::remove_reference_t<decltype(*row)>>(
-                            rings[k * kRowBlock + r]);
+                            from[k * kRowBlock]);
                     }
                 }
             }
