@@ -90,13 +90,9 @@ HWY_INLINE void advance(const Block& b, std::size_t row) {
     }
 }
 
-HWY_INLINE bool all_tiny(const Block& b, std::size_t row, int vectors) {
+HWY_INLINE bool all_tiny(const Block& b, std::size_t row) {
     const Tag d;
-    Vec largest = hn::Load(d, b.exponent + row);
-    for (int v = 1; v < vectors; ++v) {
-        largest = hn::Max(largest, hn::Load(d, b.exponent + row + v * hn::Lanes(d)));
-    }
-    return hn::AllTrue(d, hn::Lt(largest, hn::Zero(d)));
+    return hn::AllTrue(d, hn::Lt(hn::Load(d, b.exponent + row), hn::Zero(d)));
 }
 
 // Moves grown mantissas of negligible rows up one step; returns whether all rows are in range.
@@ -116,45 +112,37 @@ HWY_INLINE bool rescale(const Block& b, std::size_t row) {
     return hn::AllTrue(d, hn::Ge(raised, zero));
 }
 
+// Generates bands from `row` on as long as `kVectors` vectors fit before `end`, then fewer. Several
+// recurrences side by side hide the latency of each.
+template <int kVectors, bool kStore>
+HWY_INLINE void advance_rows(const Block& b, std::size_t row, std::size_t end) {
+    const std::size_t step = kVectors * hn::Lanes(Tag());
+    for (; row + step <= end; row += step) advance<kVectors, kStore>(b, row);
+    if constexpr (kVectors > 1) advance_rows<kVectors / 2, kStore>(b, row, end);
+}
+
 // Generates kBlock bands; returns the number of rows (whole vectors) that hold usable values.
 // `in_range` rows at the front need no scaling any more; it grows towards the pole.
 HWY_ATTR std::size_t generate(const Block& b, std::size_t* in_range) {
     const Tag d;
     const std::size_t lanes = hn::Lanes(d);
-    std::size_t row = 0;
-    // Several recurrences side by side hide the latency of each.
-    for (; row + kStreams * lanes <= *in_range; row += kStreams * lanes) {
-        advance<kStreams, true>(b, row);
-    }
-    for (; row < *in_range; row += lanes) advance<1, true>(b, row);
-
-    std::size_t usable = *in_range;
     const Vec zero = hn::Zero(d);
-    while (row < b.rows) {
-        const bool several = row + kStreams * lanes <= b.rows && all_tiny(b, row, kStreams);
-        const std::size_t end = row + (several ? kStreams * lanes : lanes);
-        if (several) {
-            advance<kStreams, false>(b, row);
-        } else if (all_tiny(b, row, 1)) {
-            advance<1, false>(b, row);
-        } else {
-            advance<1, true>(b, row);
-            const auto tiny = hn::Lt(hn::Load(d, b.exponent + row), zero);
-            for (std::size_t i = 0; i < kBlock; ++i) {
-                double* out = b.functions + i * b.rows + row;
-                hn::Store(hn::IfThenZeroElse(tiny, hn::Load(d, out)), d, out);
-                // Rows between two usable vectors hold zeros, not the last block's values.
-                for (std::size_t gap = usable; gap < row; gap += lanes) {
-                    hn::Store(zero, d, b.functions + i * b.rows + gap);
-                }
-            }
-            usable = end;
-        }
-        for (; row < end; row += lanes) {
-            if (rescale(b, row) && row == *in_range) *in_range = row + lanes;
+    advance_rows<kStreams, true>(b, 0, *in_range);
+    std::size_t tiny = b.rows;  // all rows from here on are negligible
+    while (tiny > *in_range && all_tiny(b, tiny - lanes)) tiny -= lanes;
+    advance_rows<kStreams, false>(b, tiny, b.rows);
+    for (std::size_t row = *in_range; row < tiny; row += lanes) {
+        advance<1, true>(b, row);
+        const auto negligible = hn::Lt(hn::Load(d, b.exponent + row), zero);
+        for (std::size_t i = 0; i < kBlock; ++i) {
+            double* out = b.functions + i * b.rows + row;
+            hn::Store(hn::IfThenZeroElse(negligible, hn::Load(d, out)), d, out);
         }
     }
-    return usable;
+    for (std::size_t row = *in_range; row < b.rows; row += lanes) {
+        if (rescale(b, row) && row == *in_range) *in_range = row + lanes;
+    }
+    return tiny;
 }
 
 // coefficients[(first + 2 t) * stride + c] += sum over rows of functions * folded, t < kBandTile.
