@@ -126,6 +126,7 @@ void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels,
         AlignedVector<double> even(components * padded), odd(components * padded);
         AlignedVector<double> coefficients(components * legendre.padded_bands(0));
         std::vector<double> averaged(rows), extended;
+        AlignedVector<double> values(components * spectra.padded_rows());
         LegendreStage::Workspace work;
         for (std::size_t m = m0; m < m1; ++m) {
             // Row height, column width, and the column's average of exp(i m phi); the inverse
@@ -134,8 +135,10 @@ void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels,
                                  sinc(kPi * static_cast<double>(m) / columns) * (m == 0 ? 1 : 0.5);
             // P_lm goes on past a pole with (-1)^m, the sine in its weight with -1.
             const double beyond = m % 2 ? 1 : -1;
+            spectra.read(m, 1, values.data());
             for (std::size_t c = 0; c < components; ++c) {
-                average_rows(taps, beyond, rows, spectra.at(m, c), extended, averaged.data());
+                average_rows(taps, beyond, rows, values.data() + c * spectra.padded_rows(),
+                             extended, averaged.data());
                 fold_rows(averaged.data(), weight.data(), rows, padded, even.data() + c * padded,
                           odd.data() + c * padded);
             }
@@ -154,8 +157,9 @@ void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels,
                                 odd.data(), work);
             for (std::size_t c = 0; c < components; ++c) {
                 unfold_rows(even.data() + c * padded, odd.data() + c * padded, rows,
-                            spectra.at(m, c));
+                            values.data() + c * spectra.padded_rows());
             }
+            spectra.write(m, 1, values.data());
         }
         if (progress) progress->tick(m1 - m0);
     });

@@ -59,29 +59,27 @@ void MeridianWeight<T>::shift(T* spectrum, bool back) const {
 template <class T>
 void MeridianWeight<T>::apply(RowSpectra<T>& spectra, std::size_t m0, std::size_t channel,
                               const std::vector<std::complex<T>>& turn, Workspace& work) const {
-    constexpr std::size_t kStride = LaneFft<T>::kStride, kLanes = LaneFft<T>::kLanes, kChunk = 32;
+    constexpr std::size_t kStride = LaneFft<T>::kStride, kLanes = LaneFft<T>::kLanes;
+    constexpr std::size_t kRows = RowSpectra<T>::kRowBlock;
     const std::size_t n = 2 * rows_, count = std::min(kOrders, spectra.orders() - m0);
     work.a.resize(fft_.buffer_size());
     work.b.resize(fft_.buffer_size());
     if (count < kOrders) std::fill(work.a.begin(), work.a.end(), T(0));
-    const std::vector<T> none(count % 2 ? rows_ : 0);
-    // The rows of u and v, component `part`, in one lane.
-    const auto rows_of = [&](std::size_t lane, std::size_t part, const T*& u, const T*& v) {
-        const std::size_t m = m0 + 2 * lane;
-        u = spectra.at(m, 2 * channel + part);
-        v = m + 1 < m0 + count ? spectra.at(m + 1, 2 * channel + part) : none.data();
-    };
     T* x = work.a.data();
-    for (std::size_t first = 0; first < rows_; first += kChunk) {
-        const std::size_t last = std::min(rows_, first + kChunk);
+    for (std::size_t first = 0; first < rows_; first += kRows) {
+        const std::size_t rows = std::min(kRows, rows_ - first);
+        const T* block = spectra.at(m0, channel, first / kRows);
         for (std::size_t lane = 0; 2 * lane < count; ++lane) {
+            const bool both = 2 * lane + 1 < count;
             for (std::size_t part = 0; part < 2; ++part) {
-                const T *u, *v;
-                rows_of(lane, part, u, v);
-                const std::size_t place = part * kLanes + lane;
-                for (std::size_t j = first; j < last; ++j) {
-                    x[j * kStride + place] = u[j] + v[j];
-                    x[(n - 1 - j) * kStride + place] = u[j] - v[j];
+                const T* u = block + (4 * lane + part) * kRows;
+                const T* v = u + 2 * kRows;
+                T* to = x + part * kLanes + lane;
+                for (std::size_t r = 0; r < rows; ++r) {
+                    const std::size_t j = first + r;
+                    const T odd = both ? v[r] : T(0);
+                    to[j * kStride] = u[r] + odd;
+                    to[(n - 1 - j) * kStride] = u[r] - odd;
                 }
             }
         }
@@ -102,37 +100,28 @@ void MeridianWeight<T>::apply(RowSpectra<T>& spectra, std::size_t m0, std::size_
     transform(false);
     shift(x, true);
     transform(true);
-    for (std::size_t first = 0; first < rows_; first += kChunk) {
-        const std::size_t last = std::min(rows_, first + kChunk);
-        for (std::size_t lane = 0; 2 * lane < count; ++lane) {
-            T* out[2][2];
-            for (std::size_t side = 0; side < 2; ++side) {
-                for (std::size_t part = 0; part < 2; ++part) {
-                    const std::size_t m = std::min(2 * lane + side, count - 1);
-                    out[side][part] = spectra.at(m0 + m, 2 * channel + part);
-                }
-            }
-            const bool both = 2 * lane + 1 < count;
-            const std::complex<T> turn_u = turn[m0 + 2 * lane];
-            const std::complex<T> turn_v = both ? turn[m0 + 2 * lane + 1] : std::complex<T>();
-            for (std::size_t j = first; j < last; ++j) {
+    for (std::size_t first = 0; first < rows_; first += kRows) {
+        const std::size_t rows = std::min(kRows, rows_ - first);
+        T* block = spectra.at(m0, channel, first / kRows);
+        for (std::size_t order = 0; order < count; ++order) {
+            const std::size_t lane = order / 2;
+            const T side = order % 2 ? T(-0.5) : T(0.5);
+            const T sign = order % 2 ? T(1) : T(0);
+            const std::complex<T> factor = turn[m0 + order];
+            T* re = block + 2 * order * kRows;
+            T* im = re + kRows;
+            for (std::size_t r = 0; r < rows; ++r) {
+                const std::size_t j = first + r;
                 const T* s = x + j * kStride + lane;
                 const T* t = x + (n - 1 - j) * kStride + lane;
-                const T w = on_[j];
-                const std::complex<T> u(w * out[0][0][j] + (s[0] + t[0]) / 2,
-                                        w * out[0][1][j] + (s[kLanes] + t[kLanes]) / 2);
-                const std::complex<T> turned_u = u * turn_u;
-                if (both) {
-                    const T re = j % 2 ? -nyquist[lane] : nyquist[lane];
-                    const T im = j % 2 ? -nyquist[kLanes + lane] : nyquist[kLanes + lane];
-                    const std::complex<T> v(w * (out[1][0][j] - re) + (s[0] - t[0]) / 2,
-                                            w * (out[1][1][j] - im) + (s[kLanes] - t[kLanes]) / 2);
-                    const std::complex<T> turned_v = v * turn_v;
-                    out[1][0][j] = turned_v.real();
-                    out[1][1][j] = turned_v.imag();
-                }
-                out[0][0][j] = turned_u.real();
-                out[0][1][j] = turned_u.imag();
+                const T alternating = j % 2 ? -sign : sign;
+                const std::complex<T> value(
+                    on_[j] * (re[r] - alternating * nyquist[lane]) + T(0.5) * s[0] + side * t[0],
+                    on_[j] * (im[r] - alternating * nyquist[kLanes + lane]) + T(0.5) * s[kLanes] +
+                        side * t[kLanes]);
+                const std::complex<T> turned = value * factor;
+                re[r] = turned.real();
+                im[r] = turned.imag();
             }
         }
     }

@@ -14,31 +14,42 @@
 
 namespace airlight {
 
-/// Fourier coefficients F_m(row) of every ring and channel for m = 0 … orders-1, laid out as
-/// (orders, channels, {re, im}, rows): what one azimuthal order needs is contiguous. Rows run from
-/// the north pole to the south pole. T is float or double.
+/// Fourier coefficients F_m(row) of every ring and channel for m = 0 … orders-1. Rows run from the
+/// north pole to the south pole. T is float or double.
+///
+/// Laid out as (channels, blocks of kRowBlock rows, orders, {re, im}, kRowBlock): a block of rings
+/// is transformed in one stream, and what a few orders need comes in pieces of a few cache lines.
 template <class T>
 class RowSpectra {
   public:
+    static constexpr std::size_t kRowBlock = LaneFft<T>::kStride;
+
     RowSpectra(std::size_t rows, std::size_t orders, std::size_t channels)
         : rows_(rows),
-          row_stride_((rows / kLanes + 1) * kLanes | kLanes),
+          blocks_((rows + kRowBlock - 1) / kRowBlock),
           orders_(orders),
           channels_(channels),
-          data_(row_stride_ * orders * channels * 2) {}
+          data_(blocks_ * orders * channels * 2 * kRowBlock) {}
 
     std::size_t rows() const { return rows_; }
+    /// Rows with the padding that fills the last block, whose values mean nothing.
+    std::size_t padded_rows() const { return blocks_ * kRowBlock; }
     std::size_t orders() const { return orders_; }
     std::size_t channels() const { return channels_; }
     std::size_t components() const { return 2 * channels_; }
 
-    /// The rows of component c (2 * channel for the real part, + 1 for the imaginary) of order m.
-    T* at(std::size_t m, std::size_t component) {
-        return data_.data() + (m * components() + component) * row_stride_;
+    /// The rows of one block: {re, im} of order m, kRowBlock values each, and order m+1 behind.
+    T* at(std::size_t m, std::size_t channel, std::size_t block) {
+        return data_.data() + ((channel * blocks_ + block) * orders_ + m) * 2 * kRowBlock;
     }
-    const T* at(std::size_t m, std::size_t component) const {
-        return data_.data() + (m * components() + component) * row_stride_;
+    const T* at(std::size_t m, std::size_t channel, std::size_t block) const {
+        return data_.data() + ((channel * blocks_ + block) * orders_ + m) * 2 * kRowBlock;
     }
+
+    /// Copies `count` orders from m on to or from `rows`, (count, components, padded_rows()) with
+    /// the component 2 * channel for real parts and + 1 for imaginary ones.
+    void read(std::size_t m, std::size_t count, T* rows) const;
+    void write(std::size_t m, std::size_t count, const T* rows);
 
     /// Called with a number of rows whenever so many of all channels are done; may be empty.
     using Tick = std::function<void(std::size_t rows)>;
@@ -56,19 +67,13 @@ class RowSpectra {
                  const Tick& tick = {}) const;
 
   private:
-    // Two real rings share a complex transform: one is its real part, one its imaginary part, as
-    // the places of LaneFft's elements follow each other.
-    static constexpr std::size_t kRowBlock = LaneFft<T>::kStride;
-    static constexpr std::size_t kLanes = LaneFft<T>::kLanes;
     // Columns gathered from all rows of a block before the next ones: the first-level cache holds
     // their elements.
     static constexpr std::size_t kColumns = 64;
 
+    static constexpr std::size_t kLanes = LaneFft<T>::kLanes;
     // Blocks of one task, which share their buffers.
     static constexpr std::size_t kTaskBlocks = 4;
-    // Orders lie pages apart; that many are fetched ahead.
-    static constexpr std::size_t kAhead = 8;
-
     // The elements of one block of rows in every channel, and one more to transform into.
     class Buffers {
       public:
@@ -85,38 +90,23 @@ class RowSpectra {
         std::vector<AlignedVector<T>> buffers_;
     };
 
-    // Calls body(buffers, begin, count) for all blocks of rows.
+    // Calls body(buffers, block, rows of it) for all blocks of rows.
     template <class Body>
     void for_each_block(const LaneFft<T>& fft, const Body& body) const {
-        parallel_blocks(rows_, kTaskBlocks * kRowBlock, [&](std::size_t begin, std::size_t end) {
+        parallel_blocks(blocks_, kTaskBlocks, [&](std::size_t begin, std::size_t end) {
             Buffers buffers(fft.buffer_size(), channels_);
-            for (; begin < end; begin += kRowBlock) {
-                body(buffers, begin, std::min(kRowBlock, end - begin));
+            for (std::size_t block = begin; block < end; ++block) {
+                body(buffers, block, std::min(kRowBlock, rows_ - block * kRowBlock));
             }
         });
     }
 
-    void prefetch(std::size_t m, std::size_t channel, std::size_t row) const {
-        if (m >= orders_) return;
-        for (std::size_t part = 0; part < 2; ++part) {
-            const T* rows = at(m, 2 * channel + part) + row;
-            __builtin_prefetch(rows);
-            __builtin_prefetch(rows + kLanes);
-        }
+    // The place of element `row` of the rows that read() and write() copy.
+    std::size_t place(std::size_t order, std::size_t component, std::size_t block) const {
+        return ((order * components() + component) * blocks_ + block) * kRowBlock;
     }
 
-    // All rows of a block but the last one are copied without a loop.
-    static void copy_rows(const T* from, std::size_t count, T* to) {
-        if (count == kRowBlock) {
-            std::copy_n(from, kRowBlock, to);
-        } else {
-            std::copy_n(from, count, to);
-        }
-    }
-
-    // An odd number of cache lines keeps the rows of neighbouring orders, which lie 2^n apart in a
-    // usual map, out of one another's cache sets.
-    std::size_t rows_, row_stride_, orders_, channels_;
+    std::size_t rows_, blocks_, orders_, channels_;
     AlignedVector<T> data_;
 };
 
@@ -136,17 +126,41 @@ template <class T>
 void unfold_rows(const T* even, const T* odd, std::size_t rows, T* values);
 
 template <class T>
+void RowSpectra<T>::read(std::size_t m, std::size_t count, T* rows) const {
+    for (std::size_t channel = 0; channel < channels_; ++channel) {
+        for (std::size_t block = 0; block < blocks_; ++block) {
+            const T* from = at(m, channel, block);
+            for (std::size_t i = 0; i < 2 * count; ++i, from += kRowBlock) {
+                std::copy_n(from, kRowBlock, rows + place(i / 2, 2 * channel + i % 2, block));
+            }
+        }
+    }
+}
+
+template <class T>
+void RowSpectra<T>::write(std::size_t m, std::size_t count, const T* rows) {
+    for (std::size_t channel = 0; channel < channels_; ++channel) {
+        for (std::size_t block = 0; block < blocks_; ++block) {
+            T* to = at(m, channel, block);
+            for (std::size_t i = 0; i < 2 * count; ++i, to += kRowBlock) {
+                std::copy_n(rows + place(i / 2, 2 * channel + i % 2, block), kRowBlock, to);
+            }
+        }
+    }
+}
+
+template <class T>
 template <class RowOf>
 void RowSpectra<T>::forward(const LaneFft<T>& fft, std::size_t stride, const RowOf& row_of,
                             const Tick& tick) {
     const std::size_t n = fft.length(), used = std::min(orders_, n / 2 + 1);
-    for_each_block(fft, [&](Buffers& buffers, std::size_t begin, std::size_t count) {
+    for_each_block(fft, [&](Buffers& buffers, std::size_t block, std::size_t count) {
         if (count < kRowBlock) buffers.clear();
         for (std::size_t first = 0; first < n; first += kColumns) {
             const std::size_t last = std::min(n, first + kColumns);
             for (std::size_t r = 0; r < count; ++r) {
                 for (std::size_t channel = 0; channel < channels_; ++channel) {
-                    const auto* row = row_of(begin + r, channel);
+                    const auto* row = row_of(block * kRowBlock + r, channel);
                     T* to = buffers.data(channel) + r;
                     for (std::size_t k = first; k < last; ++k) {
                         to[k * kRowBlock] = static_cast<T>(row[k * stride]);
@@ -158,23 +172,24 @@ void RowSpectra<T>::forward(const LaneFft<T>& fft, std::size_t stride, const Row
             const T* spectrum =
                 fft.transform(buffers.data(channel), false, buffers.data(channels_));
             for (std::size_t m = 0; m < used; ++m) {
-                // With Z of a + i b: A_m = (Z_m + conj Z_-m) / 2, B_m = (Z_m - conj Z_-m) / 2i.
+                // Two real rings a and b are one of a + i b with the transform Z:
+                // A_m = (Z_m + conj Z_-m) / 2, B_m = (Z_m - conj Z_-m) / 2i.
                 const T* z = spectrum + m * kRowBlock;
                 const T* y = spectrum + (n - m) % n * kRowBlock;
-                T re[kRowBlock], im[kRowBlock];
+                T rings[2 * kRowBlock];
+                T* re = rings;
+                T* im = rings + kRowBlock;
                 for (std::size_t lane = 0; lane < kLanes; ++lane) {
                     re[lane] = (z[lane] + y[lane]) / 2;
                     im[lane] = (z[kLanes + lane] - y[kLanes + lane]) / 2;
                     re[kLanes + lane] = (z[kLanes + lane] + y[kLanes + lane]) / 2;
                     im[kLanes + lane] = (y[lane] - z[lane]) / 2;
                 }
-                copy_rows(re, count, at(m, 2 * channel) + begin);
-                copy_rows(im, count, at(m, 2 * channel + 1) + begin);
+                std::copy_n(rings, 2 * kRowBlock, at(m, channel, block));
             }
             // Orders past the ring's last bin do not occur.
             for (std::size_t m = used; m < orders_; ++m) {
-                std::fill_n(at(m, 2 * channel) + begin, count, T(0));
-                std::fill_n(at(m, 2 * channel + 1) + begin, count, T(0));
+                std::fill_n(at(m, channel, block), 2 * kRowBlock, T(0));
             }
         }
         if (tick) tick(count);
@@ -186,20 +201,13 @@ template <class RowOf>
 void RowSpectra<T>::inverse(const LaneFft<T>& fft, std::size_t stride, const RowOf& row_of,
                             const Tick& tick) const {
     const std::size_t n = fft.length(), used = std::min(orders_, n / 2 + 1);
-    for_each_block(fft, [&](Buffers& buffers, std::size_t begin, std::size_t count) {
-        std::vector<const T*> rings(channels_);
+    for_each_block(fft, [&](Buffers& buffers, std::size_t block, std::size_t count) {
         for (std::size_t channel = 0; channel < channels_; ++channel) {
             T* data = buffers.data(channel);
-            T re[kRowBlock] = {}, im[kRowBlock] = {};
             for (std::size_t m = 0; m < used; ++m) {
-                prefetch(m + kAhead, channel, begin);
-                copy_rows(at(m, 2 * channel) + begin, count, re);
-                const bool real = m == 0 || 2 * m == n;
-                if (real) {
-                    std::fill_n(im, kRowBlock, T(0));
-                } else {
-                    copy_rows(at(m, 2 * channel + 1) + begin, count, im);
-                }
+                const T* re = at(m, channel, block);
+                T im[kRowBlock] = {};
+                if (m > 0 && 2 * m < n) std::copy_n(re + kRowBlock, kRowBlock, im);
                 // Z_m = A_m + i B_m and Z_-m = conj A_m + i conj B_m.
                 T z[kRowBlock], y[kRowBlock];
                 for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -214,15 +222,15 @@ void RowSpectra<T>::inverse(const LaneFft<T>& fft, std::size_t stride, const Row
             for (std::size_t m = used; m + used <= n; ++m) {
                 std::fill_n(data + m * kRowBlock, kRowBlock, T(0));
             }
-            rings[channel] = fft.transform(data, true, buffers.data(channels_));
-            if (rings[channel] != data) buffers.exchange(channel, channels_);
+            const T* rings = fft.transform(data, true, buffers.data(channels_));
+            if (rings != data) buffers.exchange(channel, channels_);
         }
         for (std::size_t first = 0; first < n; first += kColumns) {
             const std::size_t last = std::min(n, first + kColumns);
             for (std::size_t r = 0; r < count; ++r) {
                 for (std::size_t channel = 0; channel < channels_; ++channel) {
-                    auto* row = row_of(begin + r, channel);
-                    const T* from = rings[channel] + r;
+                    auto* row = row_of(block * kRowBlock + r, channel);
+                    const T* from = buffers.data(channel) + r;
                     for (std::size_t k = first; k < last; ++k) {
                         row[k * stride] = static_cast<std::remove_reference_t<decltype(*row)>>(
                             from[k * kRowBlock]);

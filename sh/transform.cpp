@@ -40,19 +40,23 @@ struct SphericalTransform::Impl {
     LegendreStage legendre;
     std::vector<double> ones;
 
-    // Scratch of one thread: the folded rows of one order.
-    struct Scratch {
-        AlignedVector<double> even, odd, coefficients;
-        LegendreStage::Workspace legendre;
-    };
+    // Orders that one task takes at a time: what they need of rows and of coefficients, which lie
+    // far apart, comes by the cache line.
+    static constexpr std::size_t kOrders = 4;
 
-    Scratch scratch(std::size_t components) const {
-        Scratch s;
-        s.even.resize(components * legendre.padded_rows());
-        s.odd.resize(components * legendre.padded_rows());
-        s.coefficients.resize(components * legendre.padded_bands(0));
-        return s;
-    }
+    // Scratch of one task.
+    struct Scratch {
+        std::size_t first, count;  // orders
+        std::size_t padded_rows, padded_bands;
+        AlignedVector<double> rows;          // (orders, components, padded rows)
+        AlignedVector<double> even, odd;     // folded rows of one order
+        AlignedVector<double> coefficients;  // (orders, bands, components)
+        LegendreStage::Workspace legendre[kOrders];
+
+        double* bands(std::size_t order, std::size_t components) {
+            return coefficients.data() + order * padded_bands * components;
+        }
+    };
 
     // `map` points at the first of `count` channels of pixels that lie `stride` values apart. The
     // rows come out weighted for quadrature.
@@ -78,48 +82,78 @@ struct SphericalTransform::Impl {
         });
     }
 
-    // Bands of order m from its rows; leaves them in s.coefficients as (bands, components), with
-    // the real part belonging to the cosine and the imaginary part to the sine harmonic.
-    void analyze_order(const RowSpectra<double>& spectra, std::size_t m, Scratch& s) const {
-        const std::size_t padded = legendre.padded_rows();
-        for (std::size_t c = 0; c < spectra.components(); ++c) {
-            fold_rows(spectra.at(m, c), ones.data(), rows, padded, s.even.data() + c * padded,
-                      s.odd.data() + c * padded);
+    // Bands of the task's orders from their rows, as (bands, components) with the real part
+    // belonging to the cosine and the imaginary part to the sine harmonic.
+    void analyze_orders(const RowSpectra<double>& spectra, Scratch& s) const {
+        const std::size_t padded = legendre.padded_rows(), components = spectra.components();
+        spectra.read(s.first, s.count, s.rows.data());
+        for (std::size_t i = 0; i < s.count; ++i) {
+            for (std::size_t c = 0; c < components; ++c) {
+                fold_rows(s.rows.data() + (i * components + c) * s.padded_rows, ones.data(), rows,
+                          padded, s.even.data() + c * padded, s.odd.data() + c * padded);
+            }
+            legendre.analyze(static_cast<int>(components), s.even.data(), s.odd.data(),
+                             s.bands(i, components), s.legendre[i]);
         }
-        legendre.analyze(static_cast<int>(spectra.components()), s.even.data(), s.odd.data(),
-                         s.coefficients.data(), s.legendre);
     }
 
-    void synthesize_order(RowSpectra<double>& spectra, std::size_t m, Scratch& s) const {
-        const std::size_t padded = legendre.padded_rows();
-        legendre.synthesize(static_cast<int>(spectra.components()), s.coefficients.data(),
-                            s.even.data(), s.odd.data(), s.legendre);
-        for (std::size_t c = 0; c < spectra.components(); ++c) {
-            unfold_rows(s.even.data() + c * padded, s.odd.data() + c * padded, rows,
-                        spectra.at(m, c));
-        }
-        const double half = m == 0 ? 1.0 : 0.5;
-        const Complex turn = half * (m % 2 ? -1.0 : 1.0) * unit(kPi * m / columns);
-        for (std::size_t channel = 0; channel < spectra.channels(); ++channel) {
-            double* re = spectra.at(m, 2 * channel);
-            double* im = spectra.at(m, 2 * channel + 1);
-            for (std::size_t row = 0; row < rows; ++row) {
-                const Complex value = Complex(re[row], im[row]) * turn;
-                re[row] = value.real();
-                im[row] = value.imag();
+    // The rows of the task's orders from their bands, which carry turn(m).
+    void synthesize_orders(RowSpectra<double>& spectra, Scratch& s) const {
+        const std::size_t padded = legendre.padded_rows(), components = spectra.components();
+        for (std::size_t i = 0; i < s.count; ++i) {
+            legendre.synthesize(static_cast<int>(components), s.bands(i, components), s.even.data(),
+                                s.odd.data(), s.legendre[i]);
+            for (std::size_t c = 0; c < components; ++c) {
+                unfold_rows(s.even.data() + c * padded, s.odd.data() + c * padded, rows,
+                            s.rows.data() + (i * components + c) * s.padded_rows);
             }
         }
+        spectra.write(s.first, s.count, s.rows.data());
+    }
+
+    // What the bands of order m are multiplied by for synthesis: the inverse transform counts
+    // orders above 0 twice, and column 0 lies half a column from pi.
+    Complex turn(std::size_t m) const {
+        return (m == 0 ? 1.0 : 0.5) * (m % 2 ? -1.0 : 1.0) * unit(kPi * m / columns);
     }
 
     template <class Body>
-    void for_each_order(std::size_t components, const Body& body) const {
-        parallel_blocks(static_cast<std::size_t>(lmax) + 1, 4, [&](std::size_t m0, std::size_t m1) {
-            Scratch s = scratch(components);
-            for (std::size_t m = m0; m < m1; ++m) {
-                legendre.prepare(static_cast<int>(m), s.legendre);
-                body(m, s);
+    void for_each_task(const RowSpectra<double>& spectra, const Body& body) const {
+        const std::size_t components = spectra.components();
+        parallel_blocks(spectra.orders(), kOrders, [&](std::size_t begin, std::size_t end) {
+            Scratch s;
+            s.first = begin;
+            s.count = end - begin;
+            s.padded_rows = spectra.padded_rows();
+            s.padded_bands = legendre.padded_bands(static_cast<int>(begin));
+            s.rows.resize(s.count * components * s.padded_rows);
+            s.even.resize(components * legendre.padded_rows());
+            s.odd.resize(components * legendre.padded_rows());
+            s.coefficients.resize(s.count * components * s.padded_bands);
+            for (std::size_t i = 0; i < s.count; ++i) {
+                legendre.prepare(static_cast<int>(begin + i), s.legendre[i]);
             }
+            body(s);
         });
+    }
+
+    // Calls visit(order, values, slot of -m, slot of +m) for every degree, channel and order of a
+    // task, with `values` {cosine, sine}: neighbouring orders, which lie side by side in a degree,
+    // together.
+    template <class Visit>
+    void for_each_band(Scratch& s, std::size_t channels, const Visit& visit) const {
+        const std::size_t last = static_cast<std::size_t>(lmax);
+        for (std::size_t l = s.first; l <= last; ++l) {
+            const std::size_t orders = std::min(s.count, l - s.first + 1);
+            for (std::size_t channel = 0; channel < channels; ++channel) {
+                const std::size_t slot = channel * (last + 1) * (last + 1) + l * (l + 1);
+                for (std::size_t i = 0; i < orders; ++i) {
+                    const std::size_t m = s.first + i;
+                    double* values = s.bands(i, 2 * channels) + 2 * ((l - m) * channels + channel);
+                    visit(i, values, slot - m, slot + m);
+                }
+            }
+        }
     }
 };
 
@@ -142,18 +176,15 @@ int SphericalTransform::lmax() const {
 template <class T>
 void SphericalTransform::analyze(const T* map, int channels, T* coefficients) const {
     const Impl& impl = *impl_;
-    RowSpectra<double> spectra = impl.spectra_of(map, channels, channels);
-    const std::size_t count = static_cast<std::size_t>(impl.lmax + 1) * (impl.lmax + 1);
-    impl.for_each_order(spectra.components(), [&](std::size_t m, Impl::Scratch& s) {
-        impl.analyze_order(spectra, m, s);
-        const double* value = s.coefficients.data();
-        for (std::size_t l = m; l <= static_cast<std::size_t>(impl.lmax); ++l) {
-            for (int channel = 0; channel < channels; ++channel, value += 2) {
-                T* band = coefficients + channel * count + l * (l + 1);
-                band[m] = static_cast<T>(value[0]);
-                if (m > 0) *(band - m) = static_cast<T>(value[1]);
-            }
-        }
+    const RowSpectra<double> spectra = impl.spectra_of(map, channels, channels);
+    impl.for_each_task(spectra, [&](Impl::Scratch& s) {
+        impl.analyze_orders(spectra, s);
+        impl.for_each_band(
+            s, channels,
+            [&](std::size_t, const double* values, std::size_t minus, std::size_t plus) {
+                coefficients[minus] = static_cast<T>(values[1]);
+                coefficients[plus] = static_cast<T>(values[0]);
+            });
     });
 }
 
@@ -161,17 +192,17 @@ template <class T>
 void SphericalTransform::synthesize(const T* coefficients, int channels, T* map) const {
     const Impl& impl = *impl_;
     RowSpectra<double> spectra(impl.rows, static_cast<std::size_t>(impl.lmax) + 1, channels);
-    const std::size_t count = static_cast<std::size_t>(impl.lmax + 1) * (impl.lmax + 1);
-    impl.for_each_order(spectra.components(), [&](std::size_t m, Impl::Scratch& s) {
-        double* value = s.coefficients.data();
-        for (std::size_t l = m; l <= static_cast<std::size_t>(impl.lmax); ++l) {
-            for (int channel = 0; channel < channels; ++channel, value += 2) {
-                const T* band = coefficients + channel * count + l * (l + 1);
-                value[0] = band[m];
-                value[1] = m > 0 ? static_cast<double>(*(band - m)) : 0.0;
-            }
-        }
-        impl.synthesize_order(spectra, m, s);
+    impl.for_each_task(spectra, [&](Impl::Scratch& s) {
+        Complex turn[Impl::kOrders];
+        for (std::size_t i = 0; i < s.count; ++i) turn[i] = impl.turn(s.first + i);
+        impl.for_each_band(
+            s, channels, [&](std::size_t i, double* values, std::size_t minus, std::size_t plus) {
+                const double sine = minus == plus ? 0.0 : static_cast<double>(coefficients[minus]);
+                const Complex value = Complex(coefficients[plus], sine) * turn[i];
+                values[0] = value.real();
+                values[1] = value.imag();
+            });
+        impl.synthesize_orders(spectra, s);
     });
     impl.map_of(spectra, channels, map);
 }
@@ -183,19 +214,23 @@ void SphericalTransform::convolve(const T* map, int channels, const double* eige
     const std::size_t orders = static_cast<std::size_t>(impl.lmax) + 1;
     // Two channels at a time: with all of them, the row spectra would take twice the map's memory.
     for (int first = 0; first < channels; first += 2) {
-        const int count = std::min(2, channels - first);
+        const std::size_t count = std::min(2, channels - first);
         RowSpectra<double> spectra = impl.spectra_of(map + first, channels, count);
-        impl.for_each_order(spectra.components(), [&](std::size_t m, Impl::Scratch& s) {
-            impl.analyze_order(spectra, m, s);
-            double* value = s.coefficients.data();
-            for (std::size_t l = m; l < orders; ++l) {
-                for (int channel = first; channel < first + count; ++channel, value += 2) {
-                    const double factor = eigenvalues[channel * orders + l];
-                    value[0] *= factor;
-                    value[1] *= factor;
+        impl.for_each_task(spectra, [&](Impl::Scratch& s) {
+            impl.analyze_orders(spectra, s);
+            for (std::size_t i = 0; i < s.count; ++i) {
+                const Complex turn = impl.turn(s.first + i);
+                double* value = s.bands(i, 2 * count);
+                for (std::size_t l = s.first + i; l < orders; ++l) {
+                    for (std::size_t channel = 0; channel < count; ++channel, value += 2) {
+                        const Complex turned = eigenvalues[(first + channel) * orders + l] * turn *
+                                               Complex(value[0], value[1]);
+                        value[0] = turned.real();
+                        value[1] = turned.imag();
+                    }
                 }
             }
-            impl.synthesize_order(spectra, m, s);
+            impl.synthesize_orders(spectra, s);
         });
         impl.map_of(spectra, channels, out + first);
     }
