@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "sh/legendre_stage.h"
@@ -59,8 +60,10 @@ using Vec = hn::Vec<Tag>;
 // Registers decide how much of a product stays in them.
 #if HWY_TARGET <= HWY_AVX3
 constexpr int kBandTile = 4, kRowTile = 4, kStreams = 8;
+constexpr bool kSumsFit = true;
 #else
 constexpr int kBandTile = 2, kRowTile = 2, kStreams = 4;
+constexpr bool kSumsFit = false;
 #endif
 
 template <int kVectors, bool kStore>
@@ -232,6 +235,120 @@ HWY_ATTR void synthesize_block(const Block& b, std::size_t usable, std::size_t s
     }
 }
 
+// Bands of one m for some of its rows, a block of bands at a time: for targets whose registers
+// cannot hold the sums of all components.
+template <int kComponents>
+HWY_ATTR void synthesize_part(Block b, std::size_t bands, std::size_t stride,
+                              const double* coefficients, double* even, double* odd) {
+    std::size_t in_range = 0;
+    for (std::size_t l = 0; l < bands; l += kBlock, b.recurrence += 3 * kBlock) {
+        const std::size_t usable = generate(b, &in_range);
+        synthesize_block<kComponents>(b, usable, stride, coefficients + l * stride, even, odd);
+    }
+}
+
+// The state of the recurrence in `kVectors` vectors of rows and the sums of all components there.
+template <int kComponents, int kVectors>
+struct RowSums {
+    Vec versine[kVectors], value[kVectors], step[kVectors];
+    Vec sums[2][kVectors][kComponents];  // of even and odd l - m
+};
+
+// Adds one band to the sums of its parity; with kMasked, where the exponent is 0 only.
+template <int kParity, bool kMasked, int kComponents, int kVectors>
+HWY_INLINE void add_band(RowSums<kComponents, kVectors>& rows, const double* recurrence,
+                         const double* coefficients, const Vec* exponent) {
+    const Tag d;
+    const Vec a = hn::Set(d, recurrence[0]), b = hn::Set(d, recurrence[1]);
+    const Vec e = hn::Set(d, recurrence[2]);
+    Vec function[kVectors];
+    for (int v = 0; v < kVectors; ++v) {
+        const Vec w = hn::NegMulAdd(a, rows.versine[v], e);
+        rows.step[v] = hn::MulAdd(w, rows.value[v], hn::Mul(b, rows.step[v]));
+        rows.value[v] = hn::Add(rows.value[v], rows.step[v]);
+        function[v] = rows.value[v];
+        if (kMasked) {
+            function[v] = hn::IfThenZeroElse(hn::Lt(exponent[v], hn::Zero(d)), function[v]);
+        }
+    }
+    for (int c = 0; c < kComponents; ++c) {
+        const Vec coefficient = hn::Set(d, coefficients[c]);
+        for (int v = 0; v < kVectors; ++v) {
+            rows.sums[kParity][v][c] =
+                hn::MulAdd(function[v], coefficient, rows.sums[kParity][v][c]);
+        }
+    }
+}
+
+// All bands of kVectors vectors of rows from `row` on: rows far below the others first, then those
+// where some are, then what is left, all in registers.
+template <int kComponents, int kVectors>
+HWY_ATTR void synthesize_rows(Block b, std::size_t row, std::size_t bands, std::size_t stride,
+                              const double* coefficients, double* even, double* odd) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    const auto all_negligible = [&]() HWY_ATTR {
+        bool all = true;
+        for (int v = 0; v < kVectors; ++v) all = all && all_tiny(b, row + v * lanes);
+        return all;
+    };
+    const auto raise = [&]() HWY_ATTR {
+        bool in_range = true;
+        for (int v = 0; v < kVectors; ++v) in_range = rescale(b, row + v * lanes) && in_range;
+        return in_range;
+    };
+    bool in_range = raise();
+    std::size_t l = 0;
+    for (; l < bands && all_negligible(); l += kBlock, b.recurrence += 3 * kBlock) {
+        advance<kVectors, false>(b, row);
+        in_range = raise();
+    }
+    if (l >= bands) return;
+    RowSums<kComponents, kVectors> rows;
+    for (int v = 0; v < kVectors; ++v) {
+        rows.versine[v] = hn::Load(d, b.versine + row + v * lanes);
+        rows.value[v] = hn::Load(d, b.value + row + v * lanes);
+        rows.step[v] = hn::Load(d, b.step + row + v * lanes);
+        for (int c = 0; c < kComponents; ++c) {
+            rows.sums[0][v][c] = rows.sums[1][v][c] = hn::Zero(d);
+        }
+    }
+    coefficients += l * stride;
+    for (; l < bands && !in_range; l += kBlock) {
+        Vec exponent[kVectors];
+        for (int v = 0; v < kVectors; ++v) {
+            exponent[v] = hn::Load(d, b.exponent + row + v * lanes);
+        }
+        for (std::size_t i = 0; i < kBlock; i += 2) {
+            add_band<0, true>(rows, b.recurrence, coefficients, exponent);
+            add_band<1, true>(rows, b.recurrence + 3, coefficients + stride, exponent);
+            b.recurrence += 6;
+            coefficients += 2 * stride;
+        }
+        for (int v = 0; v < kVectors; ++v) {
+            hn::Store(rows.value[v], d, b.value + row + v * lanes);
+            hn::Store(rows.step[v], d, b.step + row + v * lanes);
+        }
+        in_range = raise();
+        for (int v = 0; v < kVectors; ++v) {
+            rows.value[v] = hn::Load(d, b.value + row + v * lanes);
+            rows.step[v] = hn::Load(d, b.step + row + v * lanes);
+        }
+    }
+    for (; l < bands; l += 2) {
+        add_band<0, false>(rows, b.recurrence, coefficients, nullptr);
+        add_band<1, false>(rows, b.recurrence + 3, coefficients + stride, nullptr);
+        b.recurrence += 6;
+        coefficients += 2 * stride;
+    }
+    for (int v = 0; v < kVectors; ++v) {
+        for (int c = 0; c < kComponents; ++c) {
+            hn::Store(rows.sums[0][v][c], d, even + c * b.folded_stride + row + v * lanes);
+            hn::Store(rows.sums[1][v][c], d, odd + c * b.folded_stride + row + v * lanes);
+        }
+    }
+}
+
 template <int kComponents>
 void dispatch_analysis(const Block& b, std::size_t usable, int components, int first,
                        const double* even, const double* odd, double* coefficients) {
@@ -258,28 +375,25 @@ HWY_ATTR void analyze_part(Block b, std::size_t bands, int components, const dou
     }
 }
 
+// All rows and bands of one m.
 template <int kComponents>
-void dispatch_synthesis(const Block& b, std::size_t usable, int components, int first,
-                        const double* coefficients, double* even, double* odd) {
-    synthesize_block<kComponents>(b, usable, components, coefficients + first,
-                                  even + first * b.folded_stride, odd + first * b.folded_stride);
-}
-
-HWY_ATTR void synthesize_part(Block b, std::size_t bands, int components,
-                              const double* coefficients, double* even, double* odd) {
-    std::size_t in_range = 0;
-    for (std::size_t l = 0; l < bands; l += kBlock, b.recurrence += 3 * kBlock) {
-        const std::size_t usable = generate(b, &in_range);
-        const double* in = coefficients + l * components;
-        int c = 0;
-        for (; c + 6 <= components; c += 6) {
-            dispatch_synthesis<6>(b, usable, components, c, in, even, odd);
+HWY_ATTR void synthesize_components(const Block& b, std::size_t bands, std::size_t stride,
+                                    const double* coefficients, double* even, double* odd) {
+    if constexpr (!kSumsFit) {
+        for (std::size_t row = 0; row < b.rows; row += kSynthesisRows) {
+            synthesize_part<kComponents>(b.part(row, std::min(kSynthesisRows, b.rows - row)), bands,
+                                         stride, coefficients, even + row, odd + row);
         }
-        if (c + 4 <= components) {
-            dispatch_synthesis<4>(b, usable, components, c, in, even, odd);
-            c += 4;
+    } else {
+        constexpr int kVectors = kComponents > 2 ? 2 : 4;
+        const std::size_t lanes = hn::Lanes(Tag());
+        std::size_t row = 0;
+        for (; row + kVectors * lanes <= b.rows; row += kVectors * lanes) {
+            synthesize_rows<kComponents, kVectors>(b, row, bands, stride, coefficients, even, odd);
         }
-        if (c + 2 <= components) dispatch_synthesis<2>(b, usable, components, c, in, even, odd);
+        for (; row < b.rows; row += lanes) {
+            synthesize_rows<kComponents, 1>(b, row, bands, stride, coefficients, even, odd);
+        }
     }
 }
 
@@ -291,12 +405,24 @@ HWY_ATTR void run_analysis(const Block& b, std::size_t bands, int components, co
     }
 }
 
-HWY_ATTR void run_synthesis(const Block& b, std::size_t bands, int components,
-                            const double* coefficients, double* even, double* odd) {
-    for (std::size_t row = 0; row < b.rows; row += kSynthesisRows) {
-        synthesize_part(b.part(row, std::min(kSynthesisRows, b.rows - row)), bands, components,
-                        coefficients, even + row, odd + row);
-    }
+HWY_ATTR void run_synthesis(const Block& b, std::size_t bands, int components, const double* seed,
+                            const double* seed_exponent, const double* coefficients, double* even,
+                            double* odd) {
+    int c = 0;
+    const auto run = [&](auto count) HWY_ATTR {
+        constexpr int kComponents = decltype(count)::value;
+        for (; c + kComponents <= components; c += kComponents) {
+            std::fill_n(b.value, b.rows, 0.0);
+            std::copy_n(seed, b.rows, b.step);
+            std::copy_n(seed_exponent, b.rows, b.exponent);
+            synthesize_components<kComponents>(b, bands, components, coefficients + c,
+                                               even + c * b.folded_stride,
+                                               odd + c * b.folded_stride);
+        }
+    };
+    run(std::integral_constant<int, 6>());
+    run(std::integral_constant<int, 4>());
+    run(std::integral_constant<int, 2>());
 }
 
 }  // namespace HWY_NAMESPACE
@@ -443,7 +569,9 @@ void LegendreStage::synthesize(int components, double* coefficients, double* eve
     std::fill(even, even + components * padded_rows(), 0.0);
     std::fill(odd, odd + components * padded_rows(), 0.0);
     const Block block = rewind(versine_.data(), padded_rows(), work);
-    HWY_DYNAMIC_DISPATCH(run_synthesis)(block, bands, components, coefficients, even, odd);
+    HWY_DYNAMIC_DISPATCH(run_synthesis)
+    (block, bands, components, work.seed.data(), work.seed_exponent.data(), coefficients, even,
+     odd);
 }
 
 std::size_t LegendreStage::padded_bands(int m) const {
