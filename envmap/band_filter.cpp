@@ -119,7 +119,7 @@ void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels,
     for (std::size_t row = 0; row < rows; ++row) {
         weight[row] = std::sin(kPi * (std::min(row, rows - 1 - row) + 0.5) / rows);
     }
-    const LegendreStage legendre(northern_colatitudes(rows), lmax);
+    const LegendreStage<double> legendre(northern_colatitudes(rows), lmax);
     const std::vector<double> taps = row_average_filter(map.height, lmax + 2);
     const std::size_t padded = legendre.padded_rows(), components = spectra.components();
     parallel_blocks(static_cast<std::size_t>(lmax) + 1, 4, [&](std::size_t m0, std::size_t m1) {
@@ -127,7 +127,7 @@ void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels,
         AlignedVector<double> coefficients(components * legendre.padded_bands(0));
         std::vector<double> averaged(rows), extended;
         AlignedVector<double> values(components * spectra.padded_rows());
-        LegendreStage::Workspace work;
+        LegendreStage<double>::Workspace work;
         for (std::size_t m = m0; m < m1; ++m) {
             // Row height, column width, and the column's average of exp(i m phi); the inverse
             // transform counts orders above 0 twice.
@@ -143,8 +143,7 @@ void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels,
                           odd.data() + c * padded);
             }
             legendre.prepare(static_cast<int>(m), work);
-            legendre.analyze(static_cast<int>(components), even.data(), odd.data(),
-                             coefficients.data(), work);
+            legendre.analyze(components, even.data(), odd.data(), coefficients.data(), work);
             double* value = coefficients.data();
             for (std::size_t l = m; l <= static_cast<std::size_t>(lmax); ++l) {
                 for (const BandKernel& kernel : kernels) {
@@ -153,8 +152,7 @@ void write_band_filter(const Image& map, const std::vector<BandKernel>& kernels,
                     *value++ *= factor;
                 }
             }
-            legendre.synthesize(static_cast<int>(components), coefficients.data(), even.data(),
-                                odd.data(), work);
+            legendre.synthesize(components, coefficients.data(), even.data(), odd.data(), work);
             for (std::size_t c = 0; c < components; ++c) {
                 unfold_rows(even.data() + c * padded, odd.data() + c * padded, rows,
                             values.data() + c * spectra.padded_rows());

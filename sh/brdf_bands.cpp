@@ -12,9 +12,9 @@
 #include "core/parallel.h"
 #include "sh/aligned.h"
 #include "sh/index.h"
+#include "sh/lane_fft.h"
 #include "sh/legendre_stage.h"
 #include "sh/quadrature.h"
-#include "sh/ring_fft.h"
 #include "sh/row_spectra.h"
 
 namespace airlight {
@@ -50,8 +50,8 @@ struct BrdfBands::Impl {
     int order;
     HemisphereRule rule;
     std::size_t columns;
-    RingFft fft;
-    LegendreStage stage;
+    LaneFft<double> fft;
+    LegendreStage<double> stage;
 };
 
 BrdfBands::BrdfBands(int order) : impl_((assert(order >= 1), std::make_unique<Impl>(order))) {}
@@ -76,22 +76,22 @@ void BrdfBands::coefficients(const BrdfTable& table, double theta_out, double* o
         }
     });
     const auto order = static_cast<std::size_t>(impl_->order);
-    RowSpectra spectra(rows, order, 3);
-    spectra.forward(impl_->fft, [&](std::size_t row, std::size_t channel, double* ring) {
-        for (std::size_t k = 0; k < columns; ++k) {
-            ring[k] = samples[row * columns + k][static_cast<int>(channel)];
-        }
+    RowSpectra<double> spectra(rows, order, 3);
+    spectra.forward(impl_->fft, 3, [&](std::size_t row, std::size_t channel) {
+        return &samples[row * columns][static_cast<int>(channel)];
     });
-    const LegendreStage& stage = impl_->stage;
+    const LegendreStage<double>& stage = impl_->stage;
     const std::size_t padded = stage.padded_rows(), count = sh_count(impl_->order);
     parallel_blocks(order, 4, [&](std::size_t begin, std::size_t end) {
-        LegendreStage::Workspace work;
-        AlignedVector<double> folded(6 * padded), bands;
+        LegendreStage<double>::Workspace work;
+        AlignedVector<double> values(6 * spectra.padded_rows()), folded(6 * padded), bands;
         for (std::size_t m = begin; m < end; ++m) {
             stage.prepare(static_cast<int>(m), work);
             // The lower hemisphere is 0, so both folds are the upper one.
+            spectra.read(m, 1, values.data());
             for (std::size_t c = 0; c < 6; ++c) {
-                std::copy_n(spectra.at(m, c), rows, folded.data() + c * padded);
+                std::copy_n(values.data() + c * spectra.padded_rows(), rows,
+                            folded.data() + c * padded);
                 std::fill_n(folded.data() + c * padded + rows, padded - rows, 0.0);
             }
             bands.resize(6 * stage.padded_bands(static_cast<int>(m)));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sh/aligned.h"
+#include "sh/legendre_kernel.h"
 
 namespace airlight {
 
@@ -20,11 +21,15 @@ namespace airlight {
 /// of it in no fold: even = row, odd = 0) and unfolded as north = even + odd, south = even - odd
 /// (synthesis). P_lm is even in cos theta where l - m is.
 ///
+/// T is double, or float for speed: then functions err by about 1e-7 sqrt(l).
+///
 /// Method: the recurrence in l, carried by the differences P_l - P_{l-1} so that rows at the poles
 /// keep their accuracy, in rows side by side (Highway, run-time dispatch), four bands of each
 /// parity at a time, then small matrix products with all components. Seeds sin^m are kept as
 /// mantissa * 2^(192 k): a row joins the sums once |P_lm| exceeds about 2^-96, so no order
-/// underflows, and rows beside the poles where no band of an order does so are left out.
+/// underflows (2^-72 in float), and rows beside the poles where no band of an order does so are
+/// left out.
+template <class T>
 class LegendreStage {
   public:
     /// `colatitude` holds the rows of the northern hemisphere in (0, pi/2], nearest the equator
@@ -33,7 +38,7 @@ class LegendreStage {
 
     int lmax() const { return lmax_; }
     /// Rows of the folded arrays, padded for SIMD; entries past the last row must be 0.
-    std::size_t padded_rows() const { return versine_.size(); }
+    std::size_t padded_rows() const { return variable_.size(); }
     /// Bands l = m … lmax, padded likewise.
     std::size_t padded_bands(int m) const;
 
@@ -41,8 +46,9 @@ class LegendreStage {
     struct Workspace {
         int m = 0;
         std::size_t rows = 0;  // those where any band counts, padded
-        AlignedVector<double> recurrence, seed, seed_exponent;
-        AlignedVector<double> value, step, exponent, functions;
+        AlignedVector<T> recurrence, seed, seed_exponent;
+        AlignedVector<double> reference;
+        AlignedVector<T> value, step, exponent, functions;
     };
 
     /// Chooses the order for the calls that follow with this workspace.
@@ -50,22 +56,27 @@ class LegendreStage {
 
     /// `even`, `odd`: (components, padded_rows()); `coefficients`: (padded_bands(m), components),
     /// band m first. `components` is even: the real and imaginary parts of each channel.
-    void analyze(int components, const double* even, const double* odd, double* coefficients,
+    void analyze(std::size_t components, const T* even, const T* odd, T* coefficients,
                  Workspace& work) const;
     /// Overwrites even and odd, and the padding of the coefficients with zeros.
-    void synthesize(int components, double* coefficients, double* even, double* odd,
+    void synthesize(std::size_t components, T* coefficients, T* even, T* odd,
                     Workspace& work) const;
 
   private:
+    LegendreRecurrence<T> recurrence(Workspace& work) const;
     // The rows, from the equator on, where the order is not negligible in every band.
     std::size_t active_rows(int m) const;
 
     int lmax_;
     std::size_t rows_;
+    AlignedVector<T> variable_;      // as LegendreRecurrence has it
     AlignedVector<double> versine_;  // 1 - cos theta
     std::vector<long double> log2_sin_;
     std::vector<long double> root_;  // sqrt(2 l + 1)
     std::vector<double> seed_;       // P_mm / sin^m for m = 0 … lmax
 };
+
+extern template class LegendreStage<float>;
+extern template class LegendreStage<double>;
 
 }  // namespace airlight

@@ -96,7 +96,9 @@ void MeridianWeight<T>::apply(RowSpectra<T>& spectra, std::size_t m0, std::size_
     }
     shift(x, false);
     transform(true);
-    for (std::size_t j = 0; j < n; ++j) multiply_element(x + j * kStride, {between_[j], T(0)});
+    for (std::size_t j = 0; j < n; ++j) {
+        for (std::size_t place = 0; place < kStride; ++place) x[j * kStride + place] *= between_[j];
+    }
     transform(false);
     shift(x, true);
     transform(true);

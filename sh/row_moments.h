@@ -21,7 +21,7 @@ namespace airlight {
 /// sum |f_k|, and in tests under 1e-15 (columns + 40) for |f_k| <= 1. A value that is not finite
 /// makes C_0 of its channel not finite.
 ///
-/// For few orders; from some 150 on, RingFft is faster.
+/// For few orders; for many, RowSpectra transforms rows side by side.
 class RowMoments {
   public:
     /// columns >= 1, orders >= 1.

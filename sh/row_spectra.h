@@ -205,9 +205,17 @@ void RowSpectra<T>::inverse(const LaneFft<T>& fft, std::size_t stride, const Row
         for (std::size_t channel = 0; channel < channels_; ++channel) {
             T* data = buffers.data(channel);
             for (std::size_t m = 0; m < used; ++m) {
-                const T* re = at(m, channel, block);
-                T im[kRowBlock] = {};
-                if (m > 0 && 2 * m < n) std::copy_n(re + kRowBlock, kRowBlock, im);
+                // The last block's padding is nothing that its neighbours should meet.
+                const T* rows = at(m, channel, block);
+                T re[kRowBlock] = {}, im[kRowBlock] = {};
+                const bool real = m == 0 || 2 * m == n;
+                if (count == kRowBlock) {
+                    std::copy_n(rows, kRowBlock, re);
+                    if (!real) std::copy_n(rows + kRowBlock, kRowBlock, im);
+                } else {
+                    std::copy_n(rows, count, re);
+                    if (!real) std::copy_n(rows + kRowBlock, count, im);
+                }
                 // Z_m = A_m + i B_m and Z_-m = conj A_m + i conj B_m.
                 T z[kRowBlock], y[kRowBlock];
                 for (std::size_t lane = 0; lane < kLanes; ++lane) {

@@ -15,15 +15,17 @@
 namespace airlight {
 namespace {
 
-using Complex = std::complex<double>;
-
-Complex unit(double angle) {
+std::complex<double> unit(double angle) {
     return {std::cos(angle), std::sin(angle)};
 }
 
 }  // namespace
 
+// Everything in numbers of type R.
+template <class R>
 struct SphericalTransform::Impl {
+    using Complex = std::complex<R>;
+
     Impl(int rows_in, int columns_in, int lmax_in)
         : rows(rows_in),
           columns(columns_in),
@@ -31,14 +33,14 @@ struct SphericalTransform::Impl {
           ring(columns_in),
           meridian(rows_in),
           legendre(northern_colatitudes(rows_in), lmax_in),
-          ones(rows_in, 1.0) {}
+          ones(rows_in, R(1)) {}
 
     std::size_t rows, columns;
     int lmax;
-    LaneFft<double> ring;
-    MeridianWeight<double> meridian;
-    LegendreStage legendre;
-    std::vector<double> ones;
+    LaneFft<R> ring;
+    MeridianWeight<R> meridian;
+    LegendreStage<R> legendre;
+    std::vector<R> ones;
 
     // Orders that one task takes at a time: what they need of rows and of coefficients, which lie
     // far apart, comes by the cache line.
@@ -48,12 +50,12 @@ struct SphericalTransform::Impl {
     struct Scratch {
         std::size_t first, count;  // orders
         std::size_t padded_rows, padded_bands;
-        AlignedVector<double> rows;          // (orders, components, padded rows)
-        AlignedVector<double> even, odd;     // folded rows of one order
-        AlignedVector<double> coefficients;  // (orders, bands, components)
-        LegendreStage::Workspace legendre[kOrders];
+        AlignedVector<R> rows;          // (orders, components, padded rows)
+        AlignedVector<R> even, odd;     // folded rows of one order
+        AlignedVector<R> coefficients;  // (orders, bands, components)
+        typename LegendreStage<R>::Workspace legendre[kOrders];
 
-        double* bands(std::size_t order, std::size_t components) {
+        R* bands(std::size_t order, std::size_t components) {
             return coefficients.data() + order * padded_bands * components;
         }
     };
@@ -61,22 +63,22 @@ struct SphericalTransform::Impl {
     // `map` points at the first of `count` channels of pixels that lie `stride` values apart. The
     // rows come out weighted for quadrature.
     template <class T>
-    RowSpectra<double> spectra_of(const T* map, std::size_t stride, std::size_t count) const {
-        RowSpectra<double> spectra(rows, static_cast<std::size_t>(lmax) + 1, count);
+    RowSpectra<R> spectra_of(const T* map, std::size_t stride, std::size_t count) const {
+        RowSpectra<R> spectra(rows, static_cast<std::size_t>(lmax) + 1, count);
         spectra.forward(ring, stride, [&](std::size_t row, std::size_t channel) {
             return map + row * columns * stride + channel;
         });
         std::vector<Complex> turn;
         for (std::size_t m = 0; m < spectra.orders(); ++m) {
             const double width = (m % 2 ? -1.0 : 1.0) * (2 * kPi / columns);
-            turn.push_back(width * unit(-kPi * m / columns));
+            turn.push_back(static_cast<Complex>(width * unit(-kPi * m / columns)));
         }
         meridian.apply(spectra, turn);
         return spectra;
     }
 
     template <class T>
-    void map_of(const RowSpectra<double>& spectra, std::size_t stride, T* map) const {
+    void map_of(const RowSpectra<R>& spectra, std::size_t stride, T* map) const {
         spectra.inverse(ring, stride, [&](std::size_t row, std::size_t channel) {
             return map + row * columns * stride + channel;
         });
@@ -84,7 +86,7 @@ struct SphericalTransform::Impl {
 
     // Bands of the task's orders from their rows, as (bands, components) with the real part
     // belonging to the cosine and the imaginary part to the sine harmonic.
-    void analyze_orders(const RowSpectra<double>& spectra, Scratch& s) const {
+    void analyze_orders(const RowSpectra<R>& spectra, Scratch& s) const {
         const std::size_t padded = legendre.padded_rows(), components = spectra.components();
         spectra.read(s.first, s.count, s.rows.data());
         for (std::size_t i = 0; i < s.count; ++i) {
@@ -92,17 +94,17 @@ struct SphericalTransform::Impl {
                 fold_rows(s.rows.data() + (i * components + c) * s.padded_rows, ones.data(), rows,
                           padded, s.even.data() + c * padded, s.odd.data() + c * padded);
             }
-            legendre.analyze(static_cast<int>(components), s.even.data(), s.odd.data(),
-                             s.bands(i, components), s.legendre[i]);
+            legendre.analyze(components, s.even.data(), s.odd.data(), s.bands(i, components),
+                             s.legendre[i]);
         }
     }
 
     // The rows of the task's orders from their bands, which carry turn(m).
-    void synthesize_orders(RowSpectra<double>& spectra, Scratch& s) const {
+    void synthesize_orders(RowSpectra<R>& spectra, Scratch& s) const {
         const std::size_t padded = legendre.padded_rows(), components = spectra.components();
         for (std::size_t i = 0; i < s.count; ++i) {
-            legendre.synthesize(static_cast<int>(components), s.bands(i, components), s.even.data(),
-                                s.odd.data(), s.legendre[i]);
+            legendre.synthesize(components, s.bands(i, components), s.even.data(), s.odd.data(),
+                                s.legendre[i]);
             for (std::size_t c = 0; c < components; ++c) {
                 unfold_rows(s.even.data() + c * padded, s.odd.data() + c * padded, rows,
                             s.rows.data() + (i * components + c) * s.padded_rows);
@@ -114,11 +116,12 @@ struct SphericalTransform::Impl {
     // What the bands of order m are multiplied by for synthesis: the inverse transform counts
     // orders above 0 twice, and column 0 lies half a column from pi.
     Complex turn(std::size_t m) const {
-        return (m == 0 ? 1.0 : 0.5) * (m % 2 ? -1.0 : 1.0) * unit(kPi * m / columns);
+        const double sign = m % 2 ? -1.0 : 1.0;
+        return static_cast<Complex>((m == 0 ? 1.0 : 0.5) * sign * unit(kPi * m / columns));
     }
 
     template <class Body>
-    void for_each_task(const RowSpectra<double>& spectra, const Body& body) const {
+    void for_each_task(const RowSpectra<R>& spectra, const Body& body) const {
         const std::size_t components = spectra.components();
         parallel_blocks(spectra.orders(), kOrders, [&](std::size_t begin, std::size_t end) {
             Scratch s;
@@ -149,91 +152,107 @@ struct SphericalTransform::Impl {
                 const std::size_t slot = channel * (last + 1) * (last + 1) + l * (l + 1);
                 for (std::size_t i = 0; i < orders; ++i) {
                     const std::size_t m = s.first + i;
-                    double* values = s.bands(i, 2 * channels) + 2 * ((l - m) * channels + channel);
+                    R* values = s.bands(i, 2 * channels) + 2 * ((l - m) * channels + channel);
                     visit(i, values, slot - m, slot + m);
                 }
             }
         }
     }
+
+    template <class T>
+    void analyze(const T* map, int channels, T* coefficients) const {
+        const RowSpectra<R> spectra = spectra_of(map, channels, channels);
+        for_each_task(spectra, [&](Scratch& s) {
+            analyze_orders(spectra, s);
+            for_each_band(s, channels,
+                          [&](std::size_t, const R* values, std::size_t minus, std::size_t plus) {
+                              coefficients[minus] = static_cast<T>(values[1]);
+                              coefficients[plus] = static_cast<T>(values[0]);
+                          });
+        });
+    }
+
+    template <class T>
+    void synthesize(const T* coefficients, int channels, T* map) const {
+        RowSpectra<R> spectra(rows, static_cast<std::size_t>(lmax) + 1, channels);
+        for_each_task(spectra, [&](Scratch& s) {
+            Complex turns[kOrders];
+            for (std::size_t i = 0; i < s.count; ++i) turns[i] = turn(s.first + i);
+            for_each_band(
+                s, channels, [&](std::size_t i, R* values, std::size_t minus, std::size_t plus) {
+                    const double sine = minus == plus ? 0.0 : static_cast<R>(coefficients[minus]);
+                    const Complex value =
+                        Complex(static_cast<R>(coefficients[plus]), sine) * turns[i];
+                    values[0] = value.real();
+                    values[1] = value.imag();
+                });
+            synthesize_orders(spectra, s);
+        });
+        map_of(spectra, channels, map);
+    }
+
+    template <class T>
+    void convolve(const T* map, int channels, const double* eigenvalues, T* out) const {
+        const std::size_t orders = static_cast<std::size_t>(lmax) + 1;
+        // Two channels at a time: with all of them, the row spectra would take twice the map's
+        // memory.
+        for (int first = 0; first < channels; first += 2) {
+            const std::size_t count = std::min(2, channels - first);
+            RowSpectra<R> spectra = spectra_of(map + first, channels, count);
+            for_each_task(spectra, [&](Scratch& s) {
+                analyze_orders(spectra, s);
+                for (std::size_t i = 0; i < s.count; ++i) {
+                    const Complex turned = turn(s.first + i);
+                    R* value = s.bands(i, 2 * count);
+                    for (std::size_t l = s.first + i; l < orders; ++l) {
+                        for (std::size_t channel = 0; channel < count; ++channel, value += 2) {
+                            const R factor =
+                                static_cast<R>(eigenvalues[(first + channel) * orders + l]);
+                            const Complex result = factor * turned * Complex(value[0], value[1]);
+                            value[0] = result.real();
+                            value[1] = result.imag();
+                        }
+                    }
+                }
+                synthesize_orders(spectra, s);
+            });
+            map_of(spectra, channels, out + first);
+        }
+    }
 };
 
-SphericalTransform::SphericalTransform(int rows, int columns, int lmax) {
+SphericalTransform::SphericalTransform(int rows, int columns, int lmax,
+                                       TransformPrecision precision)
+    : lmax_(lmax) {
     if (rows < 1 || lmax < 0 || lmax >= rows || 2LL * lmax >= columns) {
         throw Error(ErrorCode::data,
                     "band limit " + std::to_string(lmax) + " does not fit a map of " +
                         std::to_string(columns) + " x " + std::to_string(rows) +
                         " pixels: it must be below the rows and below half the columns");
     }
-    impl_ = std::make_unique<Impl>(rows, columns, lmax);
+    if (precision == TransformPrecision::full) {
+        impl_ = std::make_unique<Impl<double>>(rows, columns, lmax);
+    } else {
+        impl_ = std::make_unique<Impl<float>>(rows, columns, lmax);
+    }
 }
 
 SphericalTransform::~SphericalTransform() = default;
 
-int SphericalTransform::lmax() const {
-    return impl_->lmax;
-}
-
 template <class T>
 void SphericalTransform::analyze(const T* map, int channels, T* coefficients) const {
-    const Impl& impl = *impl_;
-    const RowSpectra<double> spectra = impl.spectra_of(map, channels, channels);
-    impl.for_each_task(spectra, [&](Impl::Scratch& s) {
-        impl.analyze_orders(spectra, s);
-        impl.for_each_band(
-            s, channels,
-            [&](std::size_t, const double* values, std::size_t minus, std::size_t plus) {
-                coefficients[minus] = static_cast<T>(values[1]);
-                coefficients[plus] = static_cast<T>(values[0]);
-            });
-    });
+    std::visit([&](const auto& impl) { impl->analyze(map, channels, coefficients); }, impl_);
 }
 
 template <class T>
 void SphericalTransform::synthesize(const T* coefficients, int channels, T* map) const {
-    const Impl& impl = *impl_;
-    RowSpectra<double> spectra(impl.rows, static_cast<std::size_t>(impl.lmax) + 1, channels);
-    impl.for_each_task(spectra, [&](Impl::Scratch& s) {
-        Complex turn[Impl::kOrders];
-        for (std::size_t i = 0; i < s.count; ++i) turn[i] = impl.turn(s.first + i);
-        impl.for_each_band(
-            s, channels, [&](std::size_t i, double* values, std::size_t minus, std::size_t plus) {
-                const double sine = minus == plus ? 0.0 : static_cast<double>(coefficients[minus]);
-                const Complex value = Complex(coefficients[plus], sine) * turn[i];
-                values[0] = value.real();
-                values[1] = value.imag();
-            });
-        impl.synthesize_orders(spectra, s);
-    });
-    impl.map_of(spectra, channels, map);
+    std::visit([&](const auto& impl) { impl->synthesize(coefficients, channels, map); }, impl_);
 }
 
 template <class T>
 void SphericalTransform::convolve(const T* map, int channels, const double* eigenvalues,
                                   T* out) const {
-    const Impl& impl = *impl_;
-    const std::size_t orders = static_cast<std::size_t>(impl.lmax) + 1;
-    // Two channels at a time: with all of them, the row spectra would take twice the map's memory.
-    for (int first = 0; first < channels; first += 2) {
-        const std::size_t count = std::min(2, channels - first);
-        RowSpectra<double> spectra = impl.spectra_of(map + first, channels, count);
-        impl.for_each_task(spectra, [&](Impl::Scratch& s) {
-            impl.analyze_orders(spectra, s);
-            for (std::size_t i = 0; i < s.count; ++i) {
-                const Complex turn = impl.turn(s.first + i);
-                double* value = s.bands(i, 2 * count);
-                for (std::size_t l = s.first + i; l < orders; ++l) {
-                    for (std::size_t channel = 0; channel < count; ++channel, value += 2) {
-                        const Complex turned = eigenvalues[(first + channel) * orders + l] * turn *
-                                               Complex(value[0], value[1]);
-                        value[0] = turned.real();
-                        value[1] = turned.imag();
-                    }
-                }
-            }
-            impl.synthesize_orders(spectra, s);
-        });
-        impl.map_of(spectra, channels, out + first);
-    }
+    std::visit([&](const auto& impl) { impl->convolve(map, channels, eigenvalues, out); }, impl_);
 }
 
 template void SphericalTransform::analyze(const float*, int, float*) const;
