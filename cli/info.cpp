@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// airlight info: what an image, a coefficient file or a BRDF table holds.
+// airlight info: what an image, a mesh, a coefficient file or a BRDF table holds.
 #include "envmap/info.h"
 
 #include <fmt/format.h>
@@ -11,11 +11,13 @@
 
 #include "cli/brdf_report.h"
 #include "cli/command.h"
+#include "cli/info_mesh.h"
 #include "cli/info_sh.h"
 #include "core/atomic_file.h"
 #include "core/descriptor.h"
 #include "core/error.h"
 #include "envmap/io.h"
+#include "prt/mesh_io.h"
 #include "sh/brdf_file.h"
 
 namespace airlight {
@@ -28,6 +30,7 @@ struct FileFigures {
     std::vector<std::string> notes;
     std::optional<ShFile> light;      ///< of a coefficient file, which has none of the above
     std::optional<BrdfFigures> brdf;  ///< likewise of a BRDF table
+    std::optional<MeshFigures> mesh;  ///< likewise of a mesh
 };
 
 // A pipe can be read once, and the header is wanted before the pixels: both take a copy.
@@ -73,6 +76,10 @@ FileFigures look_into(const std::string& path, std::size_t max_memory) {
             file.light = read_sh_file(readable, max_memory);
             return file;
         }
+        if (looks_like_mesh(readable)) {
+            file.mesh = look_into_mesh(readable, max_memory);
+            return file;
+        }
         if (looks_like_brdf(readable)) {
             file.brdf = look_into_brdf(readable, max_memory);
             return file;
@@ -108,6 +115,7 @@ bool is_ours(const Attribute& attribute) {
 
 std::string to_lines(const FileFigures& file, bool all_attributes) {
     if (file.light) return to_lines(file.path, *file.light);
+    if (file.mesh) return to_lines(file.path, *file.mesh);
     if (file.brdf) return file.path + "\n" + to_lines(*file.brdf);
     const ImageInfo& header = file.header;
     std::string text = fmt::format("{}\n  {} x {} pixels, {}, channels {}, {}", file.path,
@@ -154,6 +162,7 @@ nlohmann::ordered_json to_json(const Attribute& attribute) {
 
 nlohmann::ordered_json to_json(const FileFigures& file) {
     if (file.light) return to_json(file.path, *file.light);
+    if (file.mesh) return to_json(file.path, *file.mesh);
     if (file.brdf) {
         nlohmann::ordered_json json = {{"file", file.path}, {"format", "brdf"}};
         json.update(to_json(*file.brdf));
@@ -219,18 +228,20 @@ void run_info(const std::vector<std::string>& paths, const CommonOptions& common
 }  // namespace
 
 Command declare_info(CLI::App& program) {
-    Command command = declare_command(
-        program, "info", "FILE...", "Tell what an image, a coefficient file or a BRDF table holds",
-        "  airlight info room.exr foggy.exr\n"
-        "  airlight info room.exr --json\n"
-        "  airlight info paint.binary\n"
-        "With -v, all attributes of the file are listed.");
+    Command command =
+        declare_command(program, "info", "FILE...",
+                        "Tell what an image, a mesh, a coefficient file or a BRDF table holds",
+                        "  airlight info room.exr foggy.exr\n"
+                        "  airlight info room.exr --json\n"
+                        "  airlight info bunny.obj\n"
+                        "  airlight info paint.binary\n"
+                        "With -v, all attributes of the file are listed.");
     const auto paths = std::make_shared<std::vector<std::string>>();
     command.app
         ->add_option(
             "files", *paths,
-            "Images (.exr, .hdr, .pfm, .tif), coefficient files of airlight sh, BRDF tables "
-            "(.binary); - is standard input")
+            "Images (.exr, .hdr, .pfm, .tif), meshes (.obj, .ply, .stl, .off), coefficient files "
+            "of airlight sh, BRDF tables (.binary); - is standard input")
         ->option_text(" ");
     add_json_flag(command, "Print the figures as JSON");
     add_max_memory_flag(command);

@@ -19,6 +19,7 @@ required="
     libkissfft-dev
     libopenexr-dev
     libopenimageio-dev
+    libopenmesh-dev
     libspdlog-dev
     libtbb-dev
     nlohmann-json3-dev

@@ -66,6 +66,44 @@ TEST(Info, LooksIntoFilesThatFogRefuses) {
     EXPECT_EQ(report["files"][0]["width"], 20);
 }
 
+TEST(Info, DescribesMeshes) {
+    const ScratchDirectory directory;
+    // A bow-tie, a repeated face, an isolated vertex and a coordinate that is none.
+    const std::string obj =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 nan\nv 3 4 5\nf 1 2 3\nf 1 4 5\nf 2 3 1\n";
+    write_bytes(directory / "a.obj", obj);
+    const Outcome outcome = run({"info", directory / "a.obj", "--json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const nlohmann::json file = nlohmann::json::parse(outcome.out)["files"][0];
+    EXPECT_EQ(file["format"], "mesh");
+    EXPECT_EQ(file["mesh_format"], "obj");
+    EXPECT_EQ(file["vertices"], 6);
+    EXPECT_EQ(file["faces"], 3);
+    EXPECT_EQ(file["triangles"], 2);
+    EXPECT_EQ(file["minimum"], (std::vector<double>{-1, -1, 0}));
+    EXPECT_EQ(file["maximum"], (std::vector<double>{3, 4, 5}));
+    EXPECT_EQ(file["normals"]["angles"], 5);
+    EXPECT_EQ(file["normals"]["up"], 1);
+    EXPECT_EQ(file["isolated_vertices"], 1);
+    EXPECT_EQ(file["boundary_edges"], 6);
+    EXPECT_EQ(file["nonmanifold_edges"], 0);
+    EXPECT_EQ(file["nonmanifold_vertices"], 1);
+    EXPECT_EQ(file["components"], 1);
+    EXPECT_EQ(file["duplicate"], 1);
+    EXPECT_EQ(file["nonfinite"], 1);
+    const Outcome text = run({"info", directory / "a.obj"});
+    for (const char* part : {"6 vertices", "2 triangles", "6 boundary edges", "(-1, -1, 0)",
+                             "1 duplicate triangles dropped"}) {
+        EXPECT_NE(text.out.find(part), std::string::npos) << part << "\n" << text.out;
+    }
+    const Outcome piped = run({"info", "-", "--json"}, obj);
+    EXPECT_EQ(nlohmann::json::parse(piped.out)["files"][0]["triangles"], 2);
+    write_bytes(directory / "b.obj", "v 0 0 0\nf 1 2 3\n");
+    expect_failure({"info", directory / "b.obj"}, 1,
+                   (directory / "b.obj") + ": line 2: the face names vertex 2, and 1 are there");
+    expect_failure({"info", directory / "a.obj", "--max-memory=100"}, 1, "--max-memory");
+}
+
 TEST(Info, ReportsNamesThatAreNoUtf8) {
     const ScratchDirectory directory;
     write_image(directory / "\xff.exr", make_map());

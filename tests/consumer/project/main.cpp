@@ -6,6 +6,8 @@
 #include "airlight/envmap/fog.h"
 #include "airlight/envmap/io.h"
 #include "airlight/medium/psf.h"
+#include "airlight/prt/mesh_io.h"
+#include "airlight/prt/mesh_topology.h"
 #include "airlight/sh/npsf.h"
 #include "core/error.h"
 
@@ -21,6 +23,9 @@ int main() {
     const double expected = std::sqrt(4 * 3.14159265358979323846) * g0;
     if (!(std::abs(scattered.at(16, 32, 0) / expected - 1) < 1e-3)) return 1;
     if (!(airlight::psf(1.0, 0.5) > 0)) return 2;
+    const airlight::Mesh mesh =
+        airlight::parse_mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "triangle.obj");
+    if (airlight::mesh_topology(mesh).boundary_edges != 3) return 4;
     try {
         airlight::read_image("missing.exr");
         return 3;
