@@ -14,12 +14,15 @@ namespace {
 
 constexpr std::size_t kChannels = 3;
 
-/// The part of each channel's square that degree l has, from its coefficients.
-double energy(const ShFile& light, std::size_t channel, int l) {
+/// The root mean square over the sphere of what a channel has of degree l.
+double rms(const ShFile& light, std::size_t channel, int l) {
     const double* c = light.coefficients.data() + channel * sh_count(light.order);
-    double sum = 0;
-    for (int m = -l; m <= l; ++m) sum += c[sh_index(l, m)] * c[sh_index(l, m)];
-    return sum;
+    double length = 0;
+    // Squares may overflow, and vanish.
+    for (int m = -l; m <= l; ++m) {
+        length = std::hypot(length, c[sh_index(l, m)] / std::sqrt(4 * kPi));
+    }
+    return length;
 }
 
 std::array<double, kChannels> mean_of(const ShFile& light) {
@@ -47,8 +50,7 @@ std::string to_lines(const std::string& path, const ShFile& light) {
     };
     row("mean radiance", [&](std::size_t c) { return mean_of(light)[c]; });
     for (int l = 1; l < std::min(light.order, 4); ++l) {
-        row(fmt::format("rms of degree {}", l),
-            [&](std::size_t c) { return std::sqrt(energy(light, c, l) / (4 * kPi)); });
+        row(fmt::format("rms of degree {}", l), [&](std::size_t c) { return rms(light, c, l); });
     }
     if (light.map) {
         text +=

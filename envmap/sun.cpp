@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "envmap/sun.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -315,12 +317,12 @@ const char* to_text(SunVerdict verdict) {
 
 Sun extract_sun(Image& map, const SunOptions& options) {
     if (!(options.largest_radius > 0 && options.largest_radius <= kPi / 2)) {
-        throw Error(ErrorCode::usage, "largest radius " + std::to_string(options.largest_radius) +
-                                          " of a sun is not in (0, pi/2]");
+        throw Error(ErrorCode::usage, fmt::format("largest radius {} of a sun is not in (0, pi/2]",
+                                                  options.largest_radius));
     }
     if (!(options.least_contrast > 1)) {
-        throw Error(ErrorCode::usage, "least contrast " + std::to_string(options.least_contrast) +
-                                          " of a sun is not above 1");
+        throw Error(ErrorCode::usage, fmt::format("least contrast {} of a sun is not above 1",
+                                                  options.least_contrast));
     }
     if (map.pixels.empty()) throw Error(ErrorCode::data, "the map has no pixels");
     refuse_what_is_not_finite(map);

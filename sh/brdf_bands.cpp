@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sh/brdf_bands.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <glm/vec3.hpp>
 #include <vector>
 
 #include "core/constants.h"
+#include "core/error.h"
 #include "core/parallel.h"
 #include "sh/aligned.h"
 #include "sh/index.h"
@@ -54,7 +56,13 @@ struct BrdfBands::Impl {
     LegendreStage<double> stage;
 };
 
-BrdfBands::BrdfBands(int order) : impl_((assert(order >= 1), std::make_unique<Impl>(order))) {}
+BrdfBands::BrdfBands(int order) {
+    if (order < 1 || order > kLargestBrdfOrder) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("the order must be in [1, {}], got {}", kLargestBrdfOrder, order));
+    }
+    impl_ = std::make_unique<Impl>(order);
+}
 
 BrdfBands::~BrdfBands() = default;
 

@@ -8,6 +8,9 @@
 
 namespace airlight {
 
+/// The largest order of BrdfBands.
+inline constexpr int kLargestBrdfOrder = 512;
+
 /// What a surface sends towards one viewer, as a function of the incident direction i over the
 /// sphere: rho(i) = f(i, o) max(0, cos theta_i), in the frame of the surface with o in its x-z
 /// plane, x > 0. Its coefficients are
@@ -21,8 +24,9 @@ namespace airlight {
 /// the reflected airlight, as in appendix B, where it stands beside k_d.
 class BrdfBands {
   public:
-    /// order >= 1. Samples 2 order rows of Gauss's rule over the upper hemisphere and 4 order
-    /// columns, so that the edge at the horizon is no obstacle.
+    /// Throws Error(usage) unless 1 <= order <= kLargestBrdfOrder. Samples 2 order rows of Gauss's
+    /// rule over the upper hemisphere and 4 order columns, so that the edge at the horizon is no
+    /// obstacle.
     explicit BrdfBands(int order);
     ~BrdfBands();
 

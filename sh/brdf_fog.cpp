@@ -45,7 +45,7 @@ void check_options(const BrdfFogOptions& options) {
         throw Error(ErrorCode::usage,
                     fmt::format("{} must be in [{}, {}], got {}", what, low, high, value));
     };
-    range(options.order, 1, 512, "the order");
+    range(options.order, 1, kLargestBrdfOrder, "the order");
     range(options.outgoing, 4, 1024, "the number of outgoing angles");
 }
 

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sh/brdf_reflectance.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
 
 #include "core/constants.h"
+#include "core/error.h"
 #include "core/parallel.h"
 #include "sh/quadrature.h"
 
@@ -32,6 +35,10 @@ glm::dvec3 above_horizon(double a, double b) {
 }  // namespace
 
 glm::dvec3 directional_reflectance(const BrdfTable& table, double theta_out, int samples) {
+    if (samples < 1) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("the samples must be at least 1, got {}", samples));
+    }
     const glm::dvec3 viewer(std::sin(theta_out), 0, std::cos(theta_out));
     const auto rows = static_cast<std::size_t>(samples);
     const int columns = 2 * samples;
@@ -71,6 +78,9 @@ glm::dvec3 white_sky_reflectance(const BrdfTable& table, int samples) {
 }
 
 double reciprocity_error(const BrdfTable& table, int pairs) {
+    if (pairs < 1) {
+        throw Error(ErrorCode::usage, fmt::format("the pairs must be at least 1, got {}", pairs));
+    }
     double worst = 0;
     for (int i = 0; i < pairs; ++i) {
         const glm::dvec3 in = above_horizon(even(i, 0), even(i, 1));

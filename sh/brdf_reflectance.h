@@ -15,7 +15,8 @@ namespace airlight {
 /// Summed over the half vector, on `samples` midpoints of sqrt(theta_h) and twice as many azimuths:
 /// what the table resolves is resolved, however narrow. Error at 128 samples: Lambertian 2e-4 up to
 /// 80 degrees; metals of roughness 0.05 and 0.2 against 1024 samples, up to 75 degrees, 8e-6 and
-/// 7e-5 (kinks of the table). Cost 5 ms on one thread (bench/brdf_bench.cpp).
+/// 7e-5 (kinks of the table). Cost 5 ms on one thread (bench/brdf_bench.cpp). Throws Error(usage),
+/// as those below, unless there is a sample.
 glm::dvec3 directional_reflectance(const BrdfTable& table, double theta_out, int samples = 128);
 
 /// 2 int directional_reflectance(theta) cos theta sin theta d theta: the share of a white sky that

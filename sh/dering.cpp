@@ -24,8 +24,8 @@ constexpr double kInside = 1e-7;
 /// Coefficients over the mean, so that the function's mean is 1 and degree 0 is left out of sums.
 std::vector<double> over_mean(int order, const double* coefficients) {
     std::vector<double> c(coefficients, coefficients + sh_count(order));
-    const double mean = c[0] / std::sqrt(4 * kPi);
-    for (double& x : c) x /= mean;
+    // Not by the mean, which may be too small a number to be told from 0.
+    for (double& x : c) x = x / coefficients[0] * std::sqrt(4 * kPi);
     return c;
 }
 
@@ -56,10 +56,11 @@ std::vector<double> nearest(const LowPlaces& places, const double* coefficients,
     }
     const double part = part_above(places, changed, least);
     std::vector<double> out = {coefficients[0]};
-    const double mean = coefficients[0] / std::sqrt(4 * kPi);
     for (std::size_t k = 1; k < c.size(); ++k) {
         // What needs no change keeps its bits.
-        out.push_back(part == 1 && changed[k] == c[k] ? coefficients[k] : part * changed[k] * mean);
+        out.push_back(part == 1 && changed[k] == c[k]
+                          ? coefficients[k]
+                          : part * changed[k] / std::sqrt(4 * kPi) * coefficients[0]);
     }
     return out;
 }

@@ -6,10 +6,14 @@
 
 #include <hwy/contrib/math/math-inl.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
+#include "core/checked.h"
 #include "core/constants.h"
 #include "core/error.h"
 #include "sh/aligned.h"
@@ -64,18 +68,23 @@ HWY_INLINE void on_grid(std::size_t size, std::size_t points, const float* synth
     }
 }
 
+// Highway's functions and limits make numbers of NaN.
+HWY_INLINE Vec keep_nan(Vec x, Vec result) {
+    return hn::IfThenElse(hn::IsNaN(x), x, result);
+}
+
 HWY_ATTR void grid_exponential(std::size_t size, std::size_t points, const float* synthesis,
                                const float* analysis, std::size_t count, const float* in,
                                float* out) {
     on_grid<1>(size, points, synthesis, analysis, count, {in}, out,
-               [](const Vec(&x)[1]) HWY_ATTR { return hn::Exp(Tag(), x[0]); });
+               [](const Vec(&x)[1]) HWY_ATTR { return keep_nan(x[0], hn::Exp(Tag(), x[0])); });
 }
 
 HWY_ATTR void grid_logarithm(std::size_t size, std::size_t points, const float* synthesis,
                              const float* analysis, std::size_t count, float floor, const float* in,
                              float* out) {
     on_grid<1>(size, points, synthesis, analysis, count, {in}, out, [=](const Vec(&x)[1]) HWY_ATTR {
-        return hn::Log(Tag(), hn::Max(x[0], hn::Set(Tag(), floor)));
+        return keep_nan(x[0], hn::Log(Tag(), hn::Max(x[0], hn::Set(Tag(), floor))));
     });
 }
 
@@ -83,7 +92,7 @@ HWY_ATTR void grid_clamp(std::size_t size, std::size_t points, const float* synt
                          const float* analysis, std::size_t count, float low, float high,
                          const float* in, float* out) {
     on_grid<1>(size, points, synthesis, analysis, count, {in}, out, [=](const Vec(&x)[1]) HWY_ATTR {
-        return hn::Min(hn::Max(x[0], hn::Set(Tag(), low)), hn::Set(Tag(), high));
+        return keep_nan(x[0], hn::Min(hn::Max(x[0], hn::Set(Tag(), low)), hn::Set(Tag(), high)));
     });
 }
 
@@ -107,16 +116,21 @@ HWY_EXPORT(grid_clamp);
 HWY_EXPORT(grid_multiply);
 
 ShGrid::ShGrid(int order, int rows) : order_(order) {
-    if (rows == 0) rows = 2 * order;
-    if (order < 1 || rows < order) {
-        throw Error(ErrorCode::usage, "a grid of " + std::to_string(rows) + " rows for order " +
-                                          std::to_string(order) +
-                                          ": the order must be at least 1, the rows the order");
+    if (order < 1 || (rows != 0 && rows < order)) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("a grid of {} rows for order {}: the order must be at least 1, the "
+                                "rows 0 or at least the order",
+                                rows, order));
     }
-    const PolarRule rule = gauss_legendre(rows);
     const std::size_t size = sh_count(order);
+    const std::size_t height = static_cast<std::size_t>(rows == 0 ? 2 * std::int64_t{order} : rows);
+    const std::string what = fmt::format("a grid of {} rows for order {}", height, order);
+    require_memory(checked_product({2, height, height, size, 2 * sizeof(double)}, what),
+                   kDefaultMaxMemory, what);
+    rows = static_cast<int>(height);
+    const PolarRule rule = gauss_legendre(rows);
     const int columns = 2 * rows;
-    points_ = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
+    points_ = 2 * height * height;
     basis_.resize(points_ * size);
     weights_.resize(points_);
     std::size_t point = 0;
@@ -174,9 +188,9 @@ void ShGrid::exponential(std::size_t count, const float* in, float* out) const {
 }
 
 void ShGrid::logarithm(std::size_t count, float floor, const float* in, float* out) const {
-    if (!(floor > 0)) {
+    if (!(floor > 0) || std::isinf(floor)) {
         throw Error(ErrorCode::usage, "logarithm of a function on the sphere: the floor is " +
-                                          std::to_string(floor) + ", it must be above 0");
+                                          fmt::format("{}, it must be above 0 and finite", floor));
     }
     HWY_DYNAMIC_DISPATCH(grid_logarithm)
     (sh_count(order_), points_, synthesis_.data(), analysis_.data(), count, floor, in, out);
@@ -185,8 +199,9 @@ void ShGrid::logarithm(std::size_t count, float floor, const float* in, float* o
 void ShGrid::clamp(std::size_t count, float low, float high, const float* in, float* out) const {
     if (!(low <= high)) {
         throw Error(ErrorCode::usage, "clamp of a function on the sphere: the limits are " +
-                                          std::to_string(low) + " and " + std::to_string(high) +
-                                          ", the first must not exceed the second");
+                                          fmt::format("{} and {}, the first must not exceed the "
+                                                      "second",
+                                                      low, high));
     }
     HWY_DYNAMIC_DISPATCH(grid_clamp)
     (sh_count(order_), points_, synthesis_.data(), analysis_.data(), count, low, high, in, out);

@@ -25,7 +25,8 @@ namespace airlight {
 /// with AVX2, 64 vectors at a time.
 class ShGrid {
   public:
-    /// Throws Error(usage) unless order >= 1 and rows is 0, for 2 order, or at least order.
+    /// Throws Error(usage) unless order >= 1 and rows is 0, for 2 order, or at least order;
+    /// Error(memory) where the matrices exceed kDefaultMaxMemory, beyond order 64 by default.
     explicit ShGrid(int order, int rows = 0);
 
     int order() const { return order_; }
@@ -38,11 +39,12 @@ class ShGrid {
     void multiply(const double* a, const double* b, double* out) const;
 
     /// exp(f), of `count` vectors (count, order^2), in float. out may be in. Where f > 88 at a
-    /// point the result is not finite.
+    /// point the result is not finite; vectors that hold NaN give NaN, here and below, and leave
+    /// the others alone.
     void exponential(std::size_t count, const float* in, float* out) const;
 
-    /// log(max(f, floor)), floor > 0: the truncated series of a positive function dips below 0.
-    /// Throws Error(usage) for other floors.
+    /// log(max(f, floor)), floor > 0 and finite: the truncated series of a positive function dips
+    /// below 0. Throws Error(usage) for other floors.
     void logarithm(std::size_t count, float floor, const float* in, float* out) const;
 
     /// min(max(f, low), high). Throws Error(usage) unless low <= high.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sh/lobes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -26,9 +28,8 @@ std::vector<double> table(int order) {
 
 double checked(double value, double low, double high, const char* what) {
     if (value >= low && value <= high) return value;
-    throw Error(ErrorCode::data, std::string(what) + " must be in [" + std::to_string(low) + ", " +
-                                     (high == kLargest ? "1e300" : std::to_string(high)) +
-                                     "], got " + std::to_string(value));
+    throw Error(ErrorCode::data,
+                fmt::format("{} must be in [{}, {}], got {}", what, low, high, value));
 }
 
 double checked_half_angle(double half_angle) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sh/npsf.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <string>
 
 #include "core/constants.h"
 #include "core/error.h"
@@ -22,7 +23,7 @@ constexpr int kPoints = 20;
 constexpr double kTail = 42;
 constexpr double kLongestPanel = 2;
 // Keeps the grading finite where the optical thickness overflows the scales below.
-constexpr double kShortestPanel = 1e-300;
+constexpr double kShortestPanel = 1e-307;
 
 struct Node {
     double x;
@@ -52,7 +53,7 @@ double laplace_density(double optical_thickness, double s, const PolarRule& rule
     const double b = std::sinh(s / 2);
     const double last_q = kTail / 2 / optical_thickness;
     const double end = last_q < b ? std::asin(last_q / b) : kPi / 2;
-    const double first = std::max(1 / (b * std::max(1.0, 2 * optical_thickness)), kShortestPanel);
+    const double first = std::max(std::min(1.0, 0.5 / optical_thickness) / b, kShortestPanel);
     double sum = 0;
     for (const Node& node : graded_nodes(rule, first, kPi, end)) {
         const double q = b * std::sin(node.x);
@@ -67,9 +68,11 @@ double laplace_density(double optical_thickness, double s, const PolarRule& rule
 std::vector<double> psf_eigenvalues_scaled(double optical_thickness, int order) {
     assert(order >= 0);
     if (!(optical_thickness >= 0) || std::isinf(optical_thickness)) {
-        throw Error(ErrorCode::data, "optical thickness must be finite and not negative, got " +
-                                         std::to_string(optical_thickness));
+        throw Error(ErrorCode::data,
+                    fmt::format("optical thickness must be finite and not negative, got {}",
+                                optical_thickness));
     }
+    optical_thickness = std::abs(optical_thickness);  // -0 divides to the wrong infinity
     std::vector<double> lambda(static_cast<std::size_t>(order), 0.0);
     const PolarRule rule = gauss_legendre(kPoints);
     const double shortest_scale = 1 / std::max({1.0, double(order), optical_thickness});

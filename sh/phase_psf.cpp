@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sh/phase_psf.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <string>
 
 #include "core/constants.h"
 #include "core/error.h"
@@ -17,15 +18,19 @@ namespace airlight {
 namespace {
 
 constexpr int kPoints = 16;
-// What lies within this angle of a pole cannot be seen in the whole.
+// What lies within this angle of a pole, over the optical thickness where that is above 1, cannot
+// be seen in the whole.
 constexpr double kFirstPanel = 1e-16;
+// Nearer, the function of a sharp peak exceeds all numbers.
+constexpr double kShortestPanel = 1e-280;
 // Phase that P_l may turn through within a panel, in radians.
 constexpr double kLongestPhase = 6;
 
-std::vector<double> panel_ends(const PhaseFunction& phase, int order) {
+std::vector<double> panel_ends(double optical_thickness, const PhaseFunction& phase, int order) {
+    const double first = std::max(kFirstPanel / std::max(1.0, optical_thickness), kShortestPanel);
     const double longest = std::min(0.2, kLongestPhase / std::max(1, order));
     std::vector<double> ends = {0, 0.5 * kPi, kPi};
-    for (double angle = kFirstPanel; angle < 0.5 * kPi; angle += std::min(angle, longest)) {
+    for (double angle = first; angle < 0.5 * kPi; angle += std::min(angle, longest)) {
         ends.push_back(angle);
         ends.push_back(kPi - angle);
     }
@@ -46,11 +51,12 @@ std::vector<double> psf_eigenvalues_scaled(double optical_thickness, const Phase
         return psf_eigenvalues_scaled(optical_thickness, order);
     }
     if (!(optical_thickness >= 0) || std::isinf(optical_thickness)) {
-        throw Error(ErrorCode::data, "optical thickness must be finite and not negative, got " +
-                                         std::to_string(optical_thickness));
+        throw Error(ErrorCode::data,
+                    fmt::format("optical thickness must be finite and not negative, got {}",
+                                optical_thickness));
     }
     const PolarRule rule = gauss_legendre(kPoints);
-    const std::vector<double> ends = panel_ends(phase, order);
+    const std::vector<double> ends = panel_ends(optical_thickness, phase, order);
     PolarRule nodes;
     std::vector<double> values;
     for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
@@ -73,6 +79,9 @@ std::vector<double> psf_eigenvalues_scaled(double optical_thickness, const Phase
 
 std::vector<double> fog_eigenvalues(double optical_thickness, double albedo,
                                     const PhaseFunction& phase, int order) {
+    if (!(albedo >= 0 && albedo <= 1)) {
+        throw Error(ErrorCode::data, fmt::format("albedo must be in [0, 1], got {}", albedo));
+    }
     std::vector<double> lambda = psf_eigenvalues_scaled(optical_thickness, phase, order);
     const double direct = std::exp(-optical_thickness);
     for (double& value : lambda) {

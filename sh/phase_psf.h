@@ -14,8 +14,8 @@ namespace airlight {
 ///
 /// The integral over the angle, on panels that double in length away from both poles: PSF
 /// sin(gamma) is bounded, and smooth in the logarithm of either distance; a table's knots are ends
-/// of panels. Accuracy 1e-12 lambda_0 for every l, measured where exact values are known: isotropic
-/// up to l = 299, lambda_0 of Rayleigh.
+/// of panels. Accuracy 1e-12 lambda_0 for every l and T up to 1e100, measured where exact values
+/// are known: isotropic up to l = 299 and T = 1e100, lambda_0 of Rayleigh.
 ///
 /// Cost, one thread: 10 ms for order 512; a table more, by its knots.
 /// Throws Error (data) if T is negative or not finite.
@@ -25,7 +25,7 @@ std::vector<double> psf_eigenvalues_scaled(double optical_thickness, const Phase
 /// What fog of the optical thickness T and the given single-scattering albedo multiplies degree l
 /// of a map's light by: e^-T, the direct part, plus albedo T e^-T times psf_eigenvalues_scaled.
 /// The foggy map of envmap/fog.h has these coefficients. All are positive; T = 0 gives ones, and
-/// from T = 745 on they are 0 by underflow. Throws as above.
+/// from T = 745 on they are 0 by underflow. Throws as above, and where the albedo is not in [0, 1].
 std::vector<double> fog_eigenvalues(double optical_thickness, double albedo,
                                     const PhaseFunction& phase, int order);
 

@@ -54,7 +54,8 @@ std::optional<ShProductMethod> sh_product_method_from_name(std::string_view name
 class ShProduct {
   public:
     /// The fastest method: tree to order 5, rows above. Throws Error(usage) for an order that is
-    /// not from 1 to 255, or that the method does not have.
+    /// not from 1 to 255, or that the method does not have, Error(memory) where its tables exceed
+    /// kDefaultMaxMemory.
     explicit ShProduct(int order);
     ShProduct(int order, ShProductMethod method);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sh/rotation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,8 +23,7 @@ using Matrix = std::array<std::array<long double, 3>, 3>;  // [row][column]
 constexpr double kOrthonormal = 1e-5;
 
 [[noreturn]] void refuse(const std::string& what, double value, const std::string& limit) {
-    throw Error(ErrorCode::usage,
-                "rotation: " + what + " is " + std::to_string(value) + ", " + limit);
+    throw Error(ErrorCode::usage, fmt::format("rotation: {} is {:.6g}, {}", what, value, limit));
 }
 
 Matrix rows_of(const glm::dmat3& rotation) {

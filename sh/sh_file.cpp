@@ -13,9 +13,16 @@
 namespace airlight {
 namespace {
 
+std::string number(double value) {
+    // JSON's -0 is an integer to many readers, which loses the sign.
+    return value == 0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value);
+}
+
 template <class Values>
 std::string list(const Values& values) {
-    return fmt::format("[{}]", fmt::join(values, ", "));
+    std::string text;
+    for (const double value : values) text += (text.empty() ? "" : ", ") + number(value);
+    return "[" + text + "]";
 }
 
 // One degree to a line.
@@ -27,8 +34,7 @@ std::string rows_of(const ShFile& file, std::size_t channel) {
         assert(std::isfinite(value));
         const ShDegree at = sh_degree(i);
         text += at.m == -at.l ? (i == 0 ? "\n     " : ",\n     ") : ", ";
-        // JSON's -0 is an integer to many readers, which loses the sign.
-        text += value == 0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value);
+        text += number(value);
     }
     return text;
 }
@@ -56,16 +62,17 @@ std::string sh_file_text(const ShFile& file) {
         text += fmt::format(",\n  \"window\": {{\"name\": \"{}\"", file.window->name);
         const bool bands = file.window->name == "bands", automatic = file.window->name == "auto";
         if (bands || automatic || file.window->name == "nearest") {
-            text += fmt::format(", \"least\": {}", file.window->least);
+            text += fmt::format(", \"least\": {}", number(file.window->least));
         }
-        if (automatic) text += fmt::format(", \"strength\": {}", file.window->strength);
+        if (automatic) text += fmt::format(", \"strength\": {}", number(file.window->strength));
         if (bands) text += fmt::format(", \"factors\": {}", list(file.window->factors));
         text += "}";
     }
     if (file.sun) {
         text += fmt::format(
             ",\n  \"sun\": {{\"direction\": {}, \"irradiance\": {}, \"angular_radius\": {}}}",
-            list(file.sun->direction), list(file.sun->irradiance), file.sun->angular_radius);
+            list(file.sun->direction), list(file.sun->irradiance),
+            number(file.sun->angular_radius));
     }
     text += ",\n  \"coefficients\": [";
     for (std::size_t c = 0; c < detail::kShChannels.size(); ++c) {

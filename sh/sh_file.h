@@ -29,10 +29,10 @@ struct ShFileFog {
 
 /// The window of sh/window.h or sh/dering.h that is part of the light.
 struct ShFileWindow {
-    std::string name;             ///< "hann", "lanczos", "auto", "bands" or "nearest"
-    double least = 0;             ///< of the last three, in means of a channel
-    double strength = 0;          ///< of "auto"
-    std::vector<double> factors;  ///< of "bands", one per degree
+    std::string name;                  ///< "hann", "lanczos", "auto", "bands" or "nearest"
+    double least = 0;                  ///< of the last three, in means of a channel
+    double strength = 0;               ///< of "auto"
+    std::vector<double> factors = {};  ///< of "bands", one per degree
 };
 
 /// The sun that was taken out of the map and is no part of the coefficients: a directional light.

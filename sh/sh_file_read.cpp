@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
+#include <system_error>
 
 #include "core/atomic_file.h"
 #include "core/constants.h"
@@ -215,16 +218,25 @@ std::vector<double> coefficients_of(const Fields& fields, int order) {
     return values;
 }
 
+/// The names that `airlight sh` writes; G is in (-1, 1).
+bool is_phase(const std::string& name) {
+    if (name.rfind("hg:", 0) != 0) {
+        return name == "isotropic" || name == "rayleigh" || name == "table";
+    }
+    double g = 0;
+    const char* end = name.data() + name.size();
+    const auto [stop, error] = std::from_chars(name.data() + 3, end, g);
+    return error == std::errc() && stop == end && g > -1 && g < 1;
+}
+
 ShFileFog fog_of(const Fields& fields) {
     fields.know({"optical_thickness", "albedo", "phase"});
     ShFileFog fog;
     fog.optical_thickness = fields.channels("optical_thickness", 0, kAny);
     fog.albedo = fields.channels("albedo", 0, 1);
     fog.phase = fields.text("phase");
-    for (const char c : fog.phase) {
-        const bool plain = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == ':' ||
-                           c == '.' || c == '-' || c == '+';
-        if (!plain) fields.refuse_value("phase", fog.phase, "the name of a phase function");
+    if (!is_phase(fog.phase)) {
+        fields.refuse_value("phase", fog.phase, "isotropic, rayleigh, hg:G or table");
     }
     return fog;
 }
@@ -357,7 +369,10 @@ bool is_json_file(const std::string& path) {
     const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
     char start[64];
     const ssize_t got = file.get() < 0 ? 0 : pread(file.get(), start, sizeof start, 0);
-    for (ssize_t i = 0; i < got; ++i) {
+    // A byte order mark is no part of the text, for the parser, too.
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    const bool marked = got >= 3 && std::string_view(start, 3) == kMark;
+    for (ssize_t i = marked ? 3 : 0; i < got; ++i) {
         if (start[i] != ' ' && start[i] != '\n' && start[i] != '\t' && start[i] != '\r') {
             return start[i] == '{';
         }

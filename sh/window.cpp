@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sh/window.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -53,7 +55,7 @@ std::vector<double> lanczos_window(int order) {
 std::vector<double> smoothing_window(int order, double strength) {
     if (!(strength >= 0)) {
         throw Error(ErrorCode::usage,
-                    "strength " + std::to_string(strength) + " of a smoothing window is not >= 0");
+                    fmt::format("strength {} of a smoothing window is not >= 0", strength));
     }
     std::vector<double> w;
     if (order >= 1) w.push_back(1);
@@ -75,7 +77,10 @@ AutomaticWindow automatic_window(int order, std::size_t channels, const double* 
                                           " of an automatic window is not in [1, " +
                                           std::to_string(kLargestAutomaticOrder) + "]");
     }
-    if (!(least < 1)) throw Error(ErrorCode::usage, "an automatic window's bound is not below 1");
+    if (!(least < 1)) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("an automatic window's bound is {}, not below 1", least));
+    }
     for (std::size_t channel = 0; channel < channels; ++channel) {
         const double* own = coefficients + channel * sh_count(order);
         for (std::size_t k = 0; k < sh_count(order); ++k) {

@@ -155,6 +155,14 @@ TEST(ExportCommand, InfoDescribesCoefficientFiles) {
         EXPECT_DOUBLE_EQ(json["mean"][c].get<double>(),
                          light.coefficients[16 * c] / std::sqrt(4 * std::acos(-1)));
     }
+    // Neither squares that overflow nor a byte order mark, which export takes, are in the way.
+    ShFile huge = light;
+    std::fill(huge.coefficients.begin(), huge.coefficients.end(), 1e300);
+    write_bytes(file, "\xEF\xBB\xBF" + sh_file_text(huge));
+    const Outcome marked = run({"info", file});
+    EXPECT_EQ(marked.status, 0) << marked.err;
+    EXPECT_NE(marked.out.find("4.88603e+299"), std::string::npos) << marked.out;
+    EXPECT_EQ(marked.out.find("inf"), std::string::npos) << marked.out;
     write_bytes(file, "{\"airlight_sh\": 9}");
     expect_failure({"info", file}, 1, file + ": airlight_sh is 9");
 }

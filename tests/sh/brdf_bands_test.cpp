@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/constants.h"
+#include "core/error.h"
 #include "sh/basis.h"
 #include "sh/brdf_models.h"
 #include "sh/brdf_reflectance.h"
@@ -47,6 +49,16 @@ TEST(BrdfBands, OfALambertianSurfaceAreTheClampedCosine) {
             EXPECT_NEAR(bands[i], exact[i % exact.size()], 1e-14) << theta << " " << i;
         }
     }
+}
+
+TEST(BrdfBands, RefuseOrdersBeyondTheirLimits) {
+    for (const int order : {0, -1, kLargestBrdfOrder + 1, std::numeric_limits<int>::max()}) {
+        EXPECT_THROW(BrdfBands bands(order), Error) << order;
+    }
+    const BrdfTable table = tabulate_lambertian(0.5, {2, 2, 4});
+    EXPECT_THROW(directional_reflectance(table, 0, 0), Error);
+    EXPECT_THROW(white_sky_reflectance(table, -1), Error);
+    EXPECT_THROW(reciprocity_error(table, 0), Error);
 }
 
 TEST(BrdfBands, AreTheIntegralsOverIncidentDirections) {

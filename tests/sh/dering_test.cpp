@@ -169,6 +169,18 @@ TEST(Dering, HoldsTheBoundAtAnyScale) {
     }
 }
 
+TEST(Dering, StaysFiniteWhereNumbersHaveNoDigitsLeft) {
+    std::vector<double> c(9);
+    c[0] = 5e-324;
+    c[2] = 2.5e-323;
+    for (const DeringMethod method : kMethods) {
+        const std::vector<double> d = dering(method, 3, 1, c.data());
+        EXPECT_EQ(d[0], c[0]);
+        // The least number apart from 0 is a mean of itself away from its neighbours.
+        EXPECT_LE(std::abs(d[2]), c[0]) << name_of(method);
+    }
+}
+
 TEST(Dering, RefusesWhatCannotBeDone) {
     std::vector<double> c(sh_count(3));
     c[0] = -1;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/constants.h"
@@ -131,6 +132,27 @@ TEST(ShGrid, LogarithmUndoesTheExponential) {
     for (std::size_t k = 0; k < 36; ++k) EXPECT_NEAR(back[k], f[k], 1e-3) << k;
 }
 
+TEST(ShGrid, NanStaysNanAndInItsVector) {
+    const ShGrid grid(3);
+    std::vector<float> in(5 * 9, 0.25f), one(9, 0.25f);
+    in[2 * 9 + 4] = std::numeric_limits<float>::quiet_NaN();
+    const auto expect = [&](const auto& function) {
+        std::vector<float> out(in.size()), alone(9);
+        function(5, in.data(), out.data());
+        function(1, one.data(), alone.data());
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            if (k / 9 == 2) {
+                EXPECT_TRUE(std::isnan(out[k])) << k;
+            } else {
+                EXPECT_EQ(out[k], alone[k % 9]) << k;
+            }
+        }
+    };
+    expect([&](std::size_t n, const float* a, float* b) { grid.exponential(n, a, b); });
+    expect([&](std::size_t n, const float* a, float* b) { grid.logarithm(n, 1e-3f, a, b); });
+    expect([&](std::size_t n, const float* a, float* b) { grid.clamp(n, 0, 1, a, b); });
+}
+
 TEST(ShGrid, RefusesWhatIsOutsideItsDomain) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     std::vector<float> memory(36);
@@ -138,6 +160,17 @@ TEST(ShGrid, RefusesWhatIsOutsideItsDomain) {
     EXPECT_THROW(ShGrid(0), Error);
     EXPECT_THROW(ShGrid(-1, 3), Error);
     EXPECT_THROW(ShGrid(6, 5), Error);
+    EXPECT_THROW(ShGrid(6, -1), Error);
+    const int largest = std::numeric_limits<int>::max();
+    for (const auto& [order, rows] : {std::pair{65, 0}, {largest, 0}, {1, largest}, {255, 382}}) {
+        try {
+            ShGrid(order, rows);
+            ADD_FAILURE() << order << " " << rows;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::memory) << error.what();
+        }
+    }
+    EXPECT_THROW(grid.logarithm(1, HUGE_VALF, memory.data(), memory.data()), Error);
     EXPECT_THROW(grid.logarithm(1, 0, memory.data(), memory.data()), Error);
     EXPECT_THROW(grid.logarithm(1, nan, memory.data(), memory.data()), Error);
     EXPECT_THROW(grid.clamp(1, 1, 0, memory.data(), memory.data()), Error);

@@ -159,6 +159,13 @@ TEST(Lobes, RefuseWhatIsOutsideTheirDomain) {
         EXPECT_THROW(gaussian_eigenvalues(bad, 4), Error) << bad;
     }
     EXPECT_THROW(cone_eigenvalues(3.1416, 4), Error);
+    try {
+        cone_eigenvalues(3.15e300, 4);
+        ADD_FAILURE() << "taken";
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(),
+                     "the half angle of a cone must be in [0, 3.141592653589793], got 3.15e+300");
+    }
     for (const int kind : {phong_lobe, cone_lobe, gaussian_lobe}) {
         EXPECT_TRUE(lobe(kind, 1, 0).empty());
         EXPECT_EQ(lobe(kind, 1, 1).size(), 1u);

@@ -144,6 +144,27 @@ TEST(PsfZonal, DoesNotDependOnTheOrderAskedFor) {
     EXPECT_TRUE(psf_zonal(1, 0).empty());
 }
 
+TEST(PsfZonal, OfHugeThicknessIsItsAsymptote) {
+    // T lambda_l e^T / T -> ln(2 T) + gamma - H_l; the next term is smaller by ln(T) / T.
+    for (const double t : {1e20, 1e100, 1e300, 1e306, 1.7e308}) {
+        const std::vector<double> lambda = psf_eigenvalues_scaled(t, 4);
+        double harmonic = 0;
+        for (int l = 0; l < 4; ++l) {
+            if (l > 0) harmonic += 1.0 / l;
+            const double limit = std::log(t) + std::log(2) + 0.57721566490153286 - harmonic;
+            // Denormal nodes have fewer digits.
+            EXPECT_NEAR(lambda[static_cast<std::size_t>(l)] * t / limit, 1,
+                        t > 1e306 ? 1e-5 : 1e-12)
+                << t << " " << l;
+        }
+    }
+}
+
+TEST(PsfZonal, TakesMinusZeroForZero) {
+    EXPECT_EQ(psf_eigenvalues_scaled(-0.0, 5), psf_eigenvalues_scaled(0.0, 5));
+    EXPECT_EQ(psf_zonal(-0.0, 5), std::vector<double>(5, 0.0));
+}
+
 TEST(PsfZonal, RefusesWhatIsNoThickness) {
     const double inf = std::numeric_limits<double>::infinity();
     for (const double t : {-1e-9, -1000.0, inf, -inf, std::numeric_limits<double>::quiet_NaN()}) {

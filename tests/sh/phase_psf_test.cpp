@@ -56,6 +56,24 @@ TEST(PhasePsfEigenvalues, FallMoreSlowlyTheSharperThePeak) {
     }
 }
 
+// The closed forms of the isotropic medium do not pass through the quadrature over the angle.
+TEST(PhasePsfEigenvalues, HoldForEveryThickness) {
+    for (const double t : {0.0, 5e-324, 1e-8, 1.0, 700.0, 1e8, 1e17, 1e60, 1e100}) {
+        const std::vector<double> exact = psf_eigenvalues_scaled(t, 6);
+        const std::vector<double> own =
+            psf_eigenvalues_scaled(t, PhaseFunction::henyey_greenstein(0), 6);
+        for (std::size_t l = 0; l < 6; ++l) {
+            EXPECT_NEAR(own[l] / exact[0], exact[l] / exact[0], 1e-12) << t << " " << l;
+        }
+    }
+    for (const double g : {-0.9999999999, 0.999999, 0.9999999999}) {
+        for (const double value :
+             psf_eigenvalues_scaled(1.7e308, PhaseFunction::henyey_greenstein(g), 6)) {
+            EXPECT_TRUE(std::isfinite(value)) << g;
+        }
+    }
+}
+
 TEST(PhasePsfEigenvalues, RefuseWhatIsNoThickness) {
     for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN(),
                              std::numeric_limits<double>::infinity()}) {
@@ -76,6 +94,9 @@ TEST(FogEigenvalues, AreDirectAndScatteredLightTogether) {
         EXPECT_EQ(fog_eigenvalues(thick, 1, PhaseFunction(), 3), std::vector<double>(3, 0.0));
     }
     EXPECT_THROW(fog_eigenvalues(-1, 1, phase, 3), Error);
+    for (const double bad : {-1e-9, 1.1, std::numeric_limits<double>::quiet_NaN()}) {
+        EXPECT_THROW(fog_eigenvalues(1, bad, phase, 3), Error) << bad;
+    }
 }
 
 }  // namespace

@@ -219,6 +219,17 @@ TEST(ShRotation, MendsWhatRoundingDidToAMatrix) {
     }
 }
 
+TEST(ShRotation, MessagesAreShort) {
+    try {
+        ShRotation rotation(3, glm::dquat(1e150, 0, 0, 0));
+        ADD_FAILURE() << "taken";
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(),
+                     "rotation: the squared length of the quaternion is 1e+300, a rotation has 1 "
+                     "within 1e-5");
+    }
+}
+
 TEST(ShRotation, RefusesWhatIsNoRotation) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const auto refused = [](int order, const auto& rotation) {

@@ -58,6 +58,15 @@ TEST(ShFiles, ComeBackInEveryBit) {
     EXPECT_EQ(sh_file_text(back), sh_file_text(file));
 }
 
+TEST(ShFiles, KeepTheSignOfZero) {
+    ShFile file = some_file(1);
+    file.fog = ShFileFog{{-0.0}, {-0.0}, "hg:-0.5"};
+    file.window = ShFileWindow{"auto", -0.0, -0.0};
+    file.sun = ShFileSun{{-0.0, 1, -0.0}, {-0.0, 0, 1}, -0.0};
+    const std::string text = sh_file_text(file);
+    EXPECT_EQ(sh_file_text(parse_sh_file(text, "a")), text);
+}
+
 TEST(ShFiles, KeepWhatWasDoneAgainstRinging) {
     ShFile file = some_file(3);
     const auto back = [&] { return parse_sh_file(sh_file_text(file), "a").window.value(); };
@@ -228,7 +237,11 @@ TEST_F(BadShFile, HasFogOrAWindowThatIsNone) {
     refuse("\"albedo\": [0.5]", "\"albedo\": [1.5]",
            "fog.albedo[0] is 1.5, not a number in [0, 1]");
     refuse("\"isotropic\"", "\"a\\nb\"",
-           "fog.phase is \"a\\nb\", not the name of a phase function");
+           "fog.phase is \"a\\nb\", not isotropic, rayleigh, hg:G or table");
+    for (const std::string name : {"", "isotropicc", "hg:", "hg:1", "hg:nan", "hg:0.5 ", "g:0.5"}) {
+        refuse("\"isotropic\"", "\"" + name + "\"",
+               "fog.phase is \"" + name + "\", not isotropic, rayleigh, hg:G or table");
+    }
     refuse("\"auto\"", "\"box\"",
            "window.name is \"box\", not hann, lanczos, auto, bands or nearest");
     refuse("\"auto\"", "\"nearest\"", "the field window.strength is unknown");
