@@ -110,7 +110,12 @@ BrdfSize read_header(const Input& file) {
     }
     to_host_order(sides.data(), sides.size(), sizeof(std::int32_t));
     const BrdfSize size = {sides[0], sides[1], sides[2]};
-    check_brdf_size(size, file.name());
+    try {
+        check_brdf_size(size);
+    } catch (const Error& error) {
+        throw Error(error.code(), fmt::format("is no BRDF table: it {}", error.what()),
+                    file.name());
+    }
     return size;
 }
 

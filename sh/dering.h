@@ -20,6 +20,8 @@ namespace airlight {
 ///         4   44 % (74)    7 ms     24 % (38)    13 ms    15 % (33)    31 ms
 ///         6   60 % (86)   21 ms     26 % (41)    50 ms    16 % (34)   140 ms
 ///         9   69 % (93)   85 ms     29 % (44)   310 ms    16 % (35)   1.2 s
+///
+/// At order 16, lamps.exr alone takes 1.3, 2.7 and 16 s.
 enum class DeringMethod {
     smoothing,  ///< the weakest automatic_window of sh/window.h, one strength for all channels
     bands,      ///< a factor in [0, 1] per degree, those of the least squared change over all
