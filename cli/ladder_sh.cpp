@@ -246,6 +246,7 @@ const std::vector<ShLadder>& sh_ladders() {
         {"sh-function", [] { return plan_rungs(sh_function_ladder); }},
         {"sh-psf", [] { return plan_rungs(sh_psf_ladder); }},
         {"sh-projection", [] { return plan_rungs(sh_projection_ladder); }},
+        {"sh-transform", [] { return plan_rungs(sh_transform_ladder); }},
         {"sh-window", plan_sh_window_ladder},
         {"brdf", [] { return plan_rungs(brdf_lookup_ladder); }},
         {"brdf-fog", [] { return plan_rungs(brdf_fog_ladder); }},

@@ -27,6 +27,7 @@ RungLadder sh_triple_ladder();
 RungLadder sh_function_ladder();
 RungLadder sh_psf_ladder();
 RungLadder sh_projection_ladder();
+RungLadder sh_transform_ladder();
 RungLadder brdf_lookup_ladder();
 RungLadder brdf_fog_ladder();
 LadderWork plan_sh_window_ladder();

@@ -267,6 +267,12 @@ TEST(Ladder, ProjectionRungsHoldTheirErrors) {
                      {"sh-projection", "sh-projection-samples"});
 }
 
+TEST(Ladder, TransformRungsHoldTheirErrors) {
+    expect_sh_ladder("sh-transform", "ns_per_pixel", "error",
+                     {{"double analysis", 2e-13}, {"single", 7e-6}},
+                     {"sh-transform", "sh-transform-synthesis"});
+}
+
 TEST(Ladder, LeastChangesKeepTheirBoundAndTakeLess) {
     const ScratchDirectory scratch;
     const Outcome outcome = run({"ladder", "sh-window", "-o", scratch.path()});
