@@ -16,7 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t kBlock = kLegendreBands;
 // Rows at a time, so that the functions and the folded rows stay in the first-level cache.
-constexpr std::size_t kAnalysisRows = kLegendreChunk, kSynthesisRows = kLegendreChunk / 2;
+constexpr std::size_t kAnalysisRows = kLegendreChunk, kSynthesisRows = 128;
 
 template <class T>
 using Tag = hn::CappedTag<T, kLegendreRows<T>>;

@@ -12,7 +12,7 @@ inline constexpr std::size_t kLegendreBands = 8;
 template <class T>
 inline constexpr std::size_t kLegendreRows = 64 / sizeof(T);
 /// Rows that LegendreRecurrence::functions has room for.
-inline constexpr std::size_t kLegendreChunk = 256;
+inline constexpr std::size_t kLegendreChunk = 400;
 
 /// Values too small to count are kept times 2^(kStepLog2 k), k < 0: in a row of exponent k they
 /// move up a step once they exceed kLargest.

@@ -24,7 +24,10 @@ template <class T>
 LegendreStage<T>::LegendreStage(const std::vector<double>& colatitude, int lmax)
     : lmax_(lmax), rows_(colatitude.size()) {
     assert(lmax >= 0);
-    variable_.assign(padded(rows_, kLegendreRows<T>), T(1));
+    // An odd number of cache lines, so that components, whole pages apart in a usual map, do not
+    // share cache sets.
+    variable_.assign((padded(rows_, kLegendreRows<T>) / kLegendreRows<T> | 1) * kLegendreRows<T>,
+                     T(1));
     versine_.assign(variable_.size(), 1.0);
     log2_sin_.resize(rows_);
     for (std::size_t r = 0; r < rows_; ++r) {
