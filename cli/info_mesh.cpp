@@ -49,7 +49,7 @@ std::vector<Figure> topology_figures(const MeshFigures& mesh) {
             {"nonmanifold_edges", "non-manifold edges", t.nonmanifold_edges},
             {"flipped_edges", "edges between opposite windings", t.flipped_edges},
             {"nonmanifold_vertices", "non-manifold vertices", t.nonmanifold_vertices},
-            {"duplicated_vertices", "copies of those in the half-edges", t.duplicated_vertices},
+            {"duplicated_vertices", "copies of vertices in the half-edges", t.duplicated_vertices},
             {"components", "components", t.components}};
 }
 

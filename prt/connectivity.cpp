@@ -13,6 +13,7 @@ class Connector {
 
     Connectivity run() {
         pair_edges();
+        count_nonmanifold_vertices();
         part_fans();
         return std::move(result_);
     }
@@ -34,6 +35,9 @@ class Connector {
         std::vector<std::uint32_t> at(begin.begin(), begin.end() - 1);
         for (std::uint32_t h = 0; h < count; ++h) order[at[low(h)]++] = h;
         result_.twin.assign(count, kNoTwin);
+        parent_.resize(count);
+        std::iota(parent_.begin(), parent_.end(), 0u);
+        nonmanifold_.resize(mesh_.positions.size());
         for (std::size_t v = 0; v + 1 < begin.size(); ++v) {
             const auto first = order.begin() + begin[v], last = order.begin() + begin[v + 1];
             std::sort(first, last, [&](std::uint32_t a, std::uint32_t b) {
@@ -54,12 +58,37 @@ class Connector {
             ++result_.boundary_edges;
         } else if (count > 2) {
             ++result_.nonmanifold_edges;
+            nonmanifold_[from(half_edges[0])] = nonmanifold_[to(half_edges[0])] = true;
         } else if (from(half_edges[0]) == from(half_edges[1])) {
             ++result_.flipped_edges;
+            unite(half_edges[0], half_edges[1]);
+            unite(next_in_triangle(half_edges[0]), next_in_triangle(half_edges[1]));
         } else {
+            unite(half_edges[0], next_in_triangle(half_edges[1]));
+            unite(next_in_triangle(half_edges[0]), half_edges[1]);
             result_.twin[half_edges[0]] = half_edges[1];
             result_.twin[half_edges[1]] = half_edges[0];
         }
+    }
+
+    // Corners, each named by the half-edge that begins there, as sets of one fan.
+    std::uint32_t root(std::uint32_t corner) {
+        while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
+        return corner;
+    }
+    void unite(std::uint32_t a, std::uint32_t b) { parent_[root(a)] = root(b); }
+
+    void count_nonmanifold_vertices() {
+        std::vector<bool> has_fan(mesh_.positions.size());
+        for (std::uint32_t corner = 0; corner < parent_.size(); ++corner) {
+            if (parent_[corner] != corner) continue;
+            const std::uint32_t v = from(corner);
+            if (has_fan[v]) nonmanifold_[v] = true;
+            has_fan[v] = true;
+        }
+        result_.nonmanifold_vertices =
+            static_cast<std::size_t>(std::count(nonmanifold_.begin(), nonmanifold_.end(), true));
+        std::vector<std::uint32_t>().swap(parent_);
     }
 
     void part_fans() {
@@ -69,17 +98,14 @@ class Connector {
         result_.vertex.assign(count, kUnseen);
         result_.file_vertex.resize(mesh_.positions.size());
         std::iota(result_.file_vertex.begin(), result_.file_vertex.end(), 0u);
-        // 0: no fan yet, 1: one, 2: more.
-        std::vector<unsigned char> fans(mesh_.positions.size(), 0);
+        std::vector<bool> has_fan(mesh_.positions.size());
         for (std::uint32_t h = 0; h < count; ++h) {
             if (result_.vertex[h] != kUnseen) continue;
             const std::uint32_t v = from(h);
             std::uint32_t number = v;
-            if (fans[v] == 0) {
-                fans[v] = 1;
+            if (!has_fan[v]) {
+                has_fan[v] = true;
             } else {
-                result_.nonmanifold_vertices += fans[v] == 1;
-                fans[v] = 2;
                 number = static_cast<std::uint32_t>(result_.file_vertex.size());
                 result_.file_vertex.push_back(v);
             }
@@ -99,6 +125,8 @@ class Connector {
 
     const Mesh& mesh_;
     Connectivity result_;
+    std::vector<std::uint32_t> parent_;
+    std::vector<bool> nonmanifold_;
 };
 
 }  // namespace

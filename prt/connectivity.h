@@ -25,6 +25,8 @@ struct Connectivity {
     std::vector<std::uint32_t> file_vertex;
 
     std::size_t edges = 0, boundary_edges = 0, nonmanifold_edges = 0, flipped_edges = 0;
+    /// Vertices on an edge of more than two triangles, and those whose triangles form more than
+    /// one fan even when neighbours of opposite winding are taken together.
     std::size_t nonmanifold_vertices = 0;
 };
 
@@ -35,7 +37,7 @@ inline std::uint32_t previous_in_triangle(std::uint32_t h) {
     return h % 3 == 0 ? h + 2 : h - 1;
 }
 
-/// Time O(n log n) for n triangles, fewer than 2^31 / 6 of them; memory about 36 bytes for each
+/// Time O(n log n) for n triangles, fewer than 2^31 / 6 of them; memory about 48 bytes for each
 /// and 12 for each vertex.
 Connectivity connect(const Mesh& mesh);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "prt/half_edges.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace airlight::detail {
@@ -12,8 +13,10 @@ HalfEdges make_half_edges(const Mesh& mesh, const Connectivity& connectivity) {
     HalfEdges result;
     auto& out = result.mesh;
     const auto handle = [](std::uint32_t index) { return static_cast<int>(index); };
-    out.reserve(connectivity.file_vertex.size(),
-                connectivity.edges + 2 * connectivity.nonmanifold_edges, mesh.triangles.size());
+    const auto borders = static_cast<std::size_t>(
+        std::count(connectivity.twin.begin(), connectivity.twin.end(), kNoTwin));
+    out.reserve(connectivity.file_vertex.size(), borders + (connectivity.twin.size() - borders) / 2,
+                mesh.triangles.size());
     for (const std::uint32_t v : connectivity.file_vertex) {
         const glm::dvec3& p = mesh.positions[v];
         out.add_vertex({p.x, p.y, p.z});

@@ -73,9 +73,11 @@ MeshFormat recognise(std::string_view start, std::size_t size, const std::string
     return MeshFormat::none;
 }
 
-RawMesh parse_raw(const Source& source) {
+RawMesh parse_raw(Source source) {
     if (source.bytes.empty()) source.refuse("is empty");
     source.report.file_bytes = source.bytes.size();
+    // A byte order mark would stick to the first word.
+    if (source.bytes.substr(0, 3) == "\xEF\xBB\xBF") source.bytes.remove_prefix(3);
     switch (recognise(source.bytes.substr(0, kStart), source.bytes.size(), source.name)) {
         case MeshFormat::obj:
             return parse_obj(source);

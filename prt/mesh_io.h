@@ -8,7 +8,7 @@
 //    non-manifold ones included. STL has no vertices of its own: its vertices are the different
 //    positions in the order in which they first appear (+0 and -0 are one position).
 //  * Faces of more than three corners become triangles: convex ones a fan from their first corner,
-//    others by cutting ears in the plane of their area vector.
+//    others by cutting ears in the plane of their area vector (up to 256 corners).
 //  * Triangles that name a vertex twice are dropped, and so are those that repeat an earlier one
 //    with the same winding. Triangles without area, and those that repeat an earlier one with the
 //    opposite winding, stay. All are counted.
@@ -50,9 +50,10 @@ struct MeshReadOptions {
 struct MeshReport {
     std::string format;  ///< "obj", "ply ascii", "ply binary_little_endian", "stl ascii" …
     std::uint64_t file_bytes = 0;
-    std::uint64_t file_faces = 0;    ///< faces of the file, of any number of corners
-    std::uint64_t polygons = 0;      ///< of those with more than three corners, now triangles
-    std::uint64_t concave_fans = 0;  ///< of those not convex and too long for ear cutting (> 256)
+    std::uint64_t file_faces = 0;  ///< faces of the file, of any number of corners
+    std::uint64_t polygons = 0;    ///< of those with more than three corners, now triangles
+    /// Of those not convex, longer than 256 corners, crossing themselves or without area: fans.
+    std::uint64_t concave_fans = 0;
     std::uint64_t short_faces = 0;   ///< faces of fewer than three corners, dropped
     std::uint64_t degenerate = 0;    ///< triangles that named a vertex twice, dropped
     std::uint64_t duplicate = 0;     ///< triangles that repeated another, dropped
@@ -72,6 +73,10 @@ struct MeshReport {
 
 /// Reads a mesh; the format is found by content, except that *.obj is OBJ and *.stl is STL where
 /// the content leaves it open. "-" reads standard input.
+///
+/// Measured in CPU time of one core (bench/mesh_bench.cpp, 1.6 million triangles of 0.8 million
+/// vertices, normals included): OBJ, OFF and ascii PLY 0.47 s, binary PLY 0.27 s, binary STL 1.0 s,
+/// of which most is the merging of corners. The process takes 236 MB for an OBJ of 79 MB.
 ///
 /// Throws Error naming the file and, where there is one, the line, byte or row:
 ///   io      it is missing, a directory, or cannot be read;

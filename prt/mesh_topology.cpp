@@ -12,9 +12,9 @@
 namespace airlight {
 namespace {
 
-// Measured with margin: neighbours, OpenMesh's arrays and the handles in between.
-constexpr std::size_t kBytesPerTriangle = 180;
-constexpr std::size_t kBytesPerVertex = 80;
+// Neighbours, OpenMesh's arrays and the handles in between, of triangles that are all cut apart.
+constexpr std::size_t kBytesPerTriangle = 300;
+constexpr std::size_t kBytesPerVertex = 64;
 // OpenMesh numbers half-edges with an int.
 constexpr std::size_t kMostTriangles = 0x7fffffff / 6;
 

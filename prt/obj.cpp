@@ -2,14 +2,27 @@
 // Wavefront OBJ: v, vn and f; the rest of the format has no bearing on visibility.
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "prt/mesh_text.h"
 #include "prt/raw_mesh.h"
 
 namespace airlight::detail {
 namespace {
+
+constexpr std::string_view kNotFaces[] = {"l", "p", "curv", "curv2", "surf"};
+constexpr std::string_view kNoBearing[] = {
+    "vt",     "vp",         "o",         "g",     "s",     "mg",    "usemtl",   "mtllib",
+    "usemap", "maplib",     "cstype",    "deg",   "bmat",  "step",  "parm",     "trim",
+    "hole",   "scrv",       "sp",        "end",   "con",   "bevel", "c_interp", "d_interp",
+    "lod",    "shadow_obj", "trace_obj", "ctech", "stech", "call",  "csh"};
+
+template <std::size_t count>
+bool is_among(const std::string_view (&words)[count], std::string_view word) {
+    return std::find(std::begin(words), std::end(words), word) != std::end(words);
+}
 
 struct Counts {
     std::size_t vertices = 0, normals = 0;
@@ -52,10 +65,16 @@ class ObjReader {
                 raw_.normal_table.push_back(vector());
             } else if (key == "f" || key == "fo") {
                 face();
-            } else if (key == "l" || key == "p" || key == "curv" || key == "curv2" ||
-                       key == "surf") {
+            } else if (is_among(kNotFaces, key)) {
                 ++not_faces_;
+            } else if (!key.empty() && !is_among(kNoBearing, key) && unknown_++ == 0) {
+                first_unknown_ = fmt::format("{} in line {}", quote_word(key), lines_.number());
             }
+        }
+        if (unknown_ > 0) {
+            source_.report.notes.push_back(
+                fmt::format("{} lines begin with no word of OBJ, the first {}, and were not read",
+                            unknown_, first_unknown_));
         }
         if (colours_) source_.report.notes.push_back("colours of vertices were not read");
         if (not_faces_ > 0) {
@@ -151,7 +170,8 @@ class ObjReader {
     TextLines lines_;
     RawMesh raw_;
     bool colours_ = false;
-    std::uint64_t not_faces_ = 0;
+    std::uint64_t not_faces_ = 0, unknown_ = 0;
+    std::string first_unknown_;
 };
 
 }  // namespace

@@ -147,6 +147,10 @@ class PlyReader {
         for (const PlyElement& element : header_.elements) {
             if (element.name == "vertex") {
                 read_vertices(element);
+            } else if (element.name == "tristrips" && element.count > 0) {
+                source_.refuse(
+                    "its faces are triangle strips (the element \"tristrips\"), which are not "
+                    "read");
             } else if (element.name == "face") {
                 read_faces(element);
             } else {

@@ -113,11 +113,14 @@ bool triangulate(const std::vector<glm::dvec3>& points, const std::uint32_t* cor
         triangles.emplace_back(corners[a], corners[b], corners[c]);
     };
     const std::vector<glm::dvec2> flat = project(points);
-    bool convex = true;
+    // A fan over corners in a line would have triangles without area.
+    bool strictly = true, convex = true;
     for (std::size_t i = 0; i < n && convex; ++i) {
-        convex = turn(flat[i], flat[(i + 1) % n], flat[(i + 2) % n]) >= 0;
+        const double angle = turn(flat[i], flat[(i + 1) % n], flat[(i + 2) % n]);
+        strictly = strictly && angle > 0;
+        convex = angle >= 0;
     }
-    if (!convex && n <= kMostCorners) return EarCutter(flat).cut(add);
+    if (!strictly && n <= kMostCorners) return EarCutter(flat).cut(add);
     for (std::size_t i = 1; i + 1 < n; ++i) add(0, i, i + 1);
     return convex;
 }

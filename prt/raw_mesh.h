@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -91,12 +92,20 @@ std::size_t stl_claim(std::string_view bytes);
 inline constexpr std::size_t kStlHeader = 84;
 inline constexpr std::size_t kStlRecord = 50;
 
+/// The three coordinates of a corner as bits, and the number by which equal ones are brought
+/// together.
+using PositionBits = std::array<std::uint64_t, 3>;
+std::uint64_t hash_position(const PositionBits& bits);
+/// What it makes of the first two coordinates, before the third comes in by exclusive or.
+std::uint64_t hash_prefix(const PositionBits& bits);
+
 /// Checks the vertices, makes triangles of the faces and computes the normals.
 Mesh build_mesh(RawMesh raw, const MeshReadOptions& options, const std::string& name,
                 MemoryBudget& budget, MeshReport& report);
 
 /// Cuts a polygon of at least 3 corners into triangles and appends them; `points` are its corners.
-/// False when it was not convex and too long for ear cutting, so that it became a fan.
+/// False when it became a fan for want of
+/// ears: it was not convex and had more than 256 corners, or crosses itself, or has no area.
 bool triangulate(const std::vector<glm::dvec3>& points, const std::uint32_t* corners,
                  std::vector<glm::uvec3>& triangles);
 

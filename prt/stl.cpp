@@ -15,7 +15,7 @@
 namespace airlight::detail {
 namespace {
 
-using Bits = std::array<std::uint64_t, 3>;
+using Bits = PositionBits;
 
 // Equal bits are equal positions once -0 is +0; NaNs stay what they are.
 Bits bits_of(const glm::dvec3& position) {
@@ -27,13 +27,9 @@ Bits bits_of(const glm::dvec3& position) {
     return bits;
 }
 
-std::uint64_t mix(const Bits& bits) {
-    std::uint64_t hash = 0;
-    for (const std::uint64_t each : bits) {
-        hash = (hash ^ each) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 32;
-    }
-    return hash;
+std::uint64_t mix(std::uint64_t hash, std::uint64_t bits) {
+    hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+    return hash ^ hash >> 32;
 }
 
 struct Corner {
@@ -52,21 +48,33 @@ void merge_corners(RawMesh& raw, const Source& source) {
     const auto count = static_cast<std::uint32_t>(positions.size());
     std::vector<Corner> order;
     source.budget.reserve(order, count, "the merging of its corners");
-    for (std::uint32_t i = 0; i < count; ++i) order.push_back({mix(bits_of(positions[i])), i});
-    std::sort(order.begin(), order.end(), [&](const Corner& a, const Corner& b) {
-        if (a.hash != b.hash) return a.hash < b.hash;
-        const Bits left = bits_of(positions[a.index]), right = bits_of(positions[b.index]);
-        return std::tie(left, a.index) < std::tie(right, b.index);
+    for (std::uint32_t i = 0; i < count; ++i)
+        order.push_back({hash_position(bits_of(positions[i])), i});
+    std::sort(order.begin(), order.end(), [](const Corner& a, const Corner& b) {
+        return a.hash != b.hash ? a.hash < b.hash : a.index < b.index;
     });
     // Every corner's first equal one, then numbers in the order of those.
     source.budget.reserve(raw.corners, count, "its faces");
     raw.corners.resize(count);
+    const auto bits = [&](const Corner& corner) { return bits_of(positions[corner.index]); };
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-        const Bits bits = bits_of(positions[order[begin].index]);
-        for (end = begin; end < order.size() && order[end].hash == order[begin].hash &&
-                          bits_of(positions[order[end].index]) == bits;
-             ++end) {
-            raw.corners[order[end].index] = order[begin].index;
+        const Bits first = bits(order[begin]);
+        bool alike = true;
+        for (end = begin; end < order.size() && order[end].hash == order[begin].hash; ++end) {
+            alike = alike && bits(order[end]) == first;
+        }
+        // Different positions of one hash are rare, unless the file was made so.
+        if (!alike) {
+            std::sort(order.begin() + static_cast<std::ptrdiff_t>(begin),
+                      order.begin() + static_cast<std::ptrdiff_t>(end),
+                      [&](const Corner& a, const Corner& b) {
+                          const Bits left = bits(a), right = bits(b);
+                          return std::tie(left, a.index) < std::tie(right, b.index);
+                      });
+        }
+        for (std::size_t i = begin; i < end; ++i) {
+            const bool same = i > begin && (alike || bits(order[i]) == bits(order[i - 1]));
+            raw.corners[order[i].index] = same ? raw.corners[order[i - 1].index] : order[i].index;
         }
     }
     std::uint32_t kept = 0;
@@ -151,6 +159,14 @@ class StlText {
 };
 
 }  // namespace
+
+std::uint64_t hash_prefix(const PositionBits& bits) {
+    return mix(mix(0, bits[0]), bits[1]);
+}
+
+std::uint64_t hash_position(const PositionBits& bits) {
+    return mix(hash_prefix(bits), bits[2]);
+}
 
 std::size_t stl_claim(std::string_view bytes) {
     return bytes.size() < kStlHeader ? 0 : load_unsigned(bytes.data() + 80, 4, false);

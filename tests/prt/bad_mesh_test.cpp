@@ -161,6 +161,9 @@ TEST(BadMesh, HeadersOfPlyAreHeldAgainstTheFile) {
                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
                       "0 0 0\n200 0 0 0\n"),
               "line 11: the list \"vertex_indices\" claims 200 values, more than are left");
+    EXPECT_EQ(refusal(start + "element tristrips 1\nproperty list int int vertex_indices\n"
+                              "end_header\n3 0 1 2\n"),
+              "its faces are triangle strips (the element \"tristrips\"), which are not read");
     // Rows of nothing take no bytes, however many they are.
     EXPECT_EQ(
         refusal(start + "element thing 4000000000000\nelement vertex 0\n" + xyz + "end_header\n"),

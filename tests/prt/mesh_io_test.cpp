@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 
 #include "prt/mesh_normals.h"
+#include "prt/raw_mesh.h"
 #include "tests/core/scratch_directory.h"
 #include "tests/prt/mesh_files.h"
 
@@ -97,6 +98,48 @@ TEST(MeshFile, NumbersThatNoDoubleHoldsBecomeInfiniteOrZero) {
     EXPECT_EQ(mesh.positions[0], glm::dvec3(0, 0, 1));
     EXPECT_EQ(mesh.positions[2], glm::dvec3(0, 0, 7));
     EXPECT_EQ(report.nonfinite, 5u);
+}
+
+TEST(MeshFile, ObjSaysWhichLinesItDoesNotKnow) {
+    // A byte order mark before the first vertex must not cost that vertex.
+    MeshReport report;
+    const Mesh mesh =
+        parse_mesh("\xEF\xBB\xBFv 1 2 3\nV 4 5 6\nvertex 7 8 9\n", "a.obj", {}, &report);
+    EXPECT_EQ(mesh.positions, (std::vector<glm::dvec3>{{1, 2, 3}}));
+    EXPECT_EQ(report.notes, (std::vector<std::string>{
+                                "2 lines begin with no word of OBJ, the first \"V\" in line "
+                                "2, and were not read"}));
+}
+
+TEST(MeshFile, StlKeepsPositionsApartThatShareAHash) {
+    // The last coordinate is chosen so that the hashes of two different positions are equal.
+    const auto bits = [](double value) {
+        std::uint64_t raw = 0;
+        std::memcpy(&raw, &value, sizeof(raw));
+        return raw;
+    };
+    const detail::PositionBits one = {bits(1), bits(2), bits(3)};
+    std::string text = "solid a\n";
+    int found = 0;
+    for (int i = 0; i < 1000 && found < 4; ++i) {
+        // hash(x, y, z) is a bijection of hash(x, y) ^ z, so the z wanted can be searched by its
+        // effect on the difference: z' = z ^ h(x, y) ^ h(x', y').
+        detail::PositionBits other = {bits(i), bits(7), 0};
+        other[2] = detail::hash_prefix(one) ^ detail::hash_prefix(other) ^ one[2];
+        double z = 0;
+        std::memcpy(&z, &other[2], sizeof(z));
+        if (!(std::fabs(z) < 1e99) || z == 0) continue;
+        ASSERT_EQ(detail::hash_position(one), detail::hash_position(other));
+        ++found;
+        text += "facet normal 0 0 1\nouter loop\nvertex 1 2 3\nvertex " +
+                words(glm::dvec3(i, 7, z)) + "\nvertex 0 0 0\nendloop\nendfacet\n";
+    }
+    ASSERT_EQ(found, 4);
+    MeshReport report;
+    const Mesh mesh = parse_mesh(text + "endsolid a\n", "a.stl", {}, &report);
+    EXPECT_EQ(mesh.positions.size(), 6u);
+    EXPECT_EQ(report.merged, 6u);
+    EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 3, 2}, {0, 4, 2}, {0, 5, 2}}));
 }
 
 TEST(MeshFile, OffTakesItsPrefixesAndColours) {
@@ -190,6 +233,12 @@ TEST(MeshFile, PolygonsAreCutWithoutOverlapWhereverTheyAreConcave) {
     // Convex ones are fans.
     EXPECT_EQ(parse_mesh("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 2 3 4 1\n", "a").triangles,
               (Triangles{{1, 2, 3}, {1, 3, 0}}));
+    // Corners in a line cost no area.
+    MeshReport report;
+    const Mesh line =
+        parse_mesh("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 1 1 0\nf 1 2 3 4\n", "a", {}, &report);
+    EXPECT_EQ(line.triangles.size(), 2u);
+    EXPECT_EQ(report.zero_area + report.concave_fans, 0u);
     // A quadrangle with a dent at its second corner.
     EXPECT_EQ(parse_mesh("v 0 2 0\nv 0 1 0\nv 2 0 0\nv -2 0 0\nf 1 4 2 3\n", "a").triangles.size(),
               2u);
