@@ -5,6 +5,11 @@ include(CMakePackageConfigHelpers)
 add_library(airlight_options INTERFACE)
 target_compile_features(airlight_options INTERFACE cxx_std_17)
 # Contraction would make results depend on the compiler's choices: fused operations are written out.
+if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|i[3-6]86")
+    # Vectors without a size at compile time cannot be members or elements; NEON remains.
+    target_compile_definitions(airlight_options INTERFACE
+        "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
+endif()
 target_compile_options(airlight_options INTERFACE -Wall -Wextra -Wshadow -ffp-contract=off)
 if(AIRLIGHT_SANITIZE)
     target_compile_options(airlight_options INTERFACE
