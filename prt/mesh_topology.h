@@ -18,8 +18,8 @@ struct MeshTopology {
     /// Vertices on an edge of more than two triangles, or whose triangles form more than one fan,
     /// whatever their windings.
     std::uint64_t nonmanifold_vertices = 0;
-    /// Copies of vertices in the half-edge mesh, where edges of the last two kinds are cut; the
-    /// arrays of Mesh never have any.
+    /// Copies of vertices in the half-edge mesh, one for every further fan of triangles once edges
+    /// of the last two kinds are cut; the arrays of Mesh never have any.
     std::uint64_t duplicated_vertices = 0;
     std::uint64_t boundary_loops = 0;  ///< closed chains of border half-edges, cuts included
     std::uint64_t components = 0;      ///< sets of triangles joined by vertices
