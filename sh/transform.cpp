@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sh/transform.h"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,28 +34,41 @@ struct SphericalTransform::Impl {
           lmax(lmax_in),
           ring(columns_in),
           meridian(rows_in),
-          legendre(northern_colatitudes(rows_in), lmax_in),
-          ones(rows_in, R(1)) {}
+          legendre(northern_colatitudes(rows_in), lmax_in) {
+        if (std::is_same_v<R, float>) precise.emplace(northern_colatitudes(rows_in), lmax_in);
+    }
 
     std::size_t rows, columns;
     int lmax;
     LaneFft<R> ring;
     MeridianWeight<R> meridian;
     LegendreStage<R> legendre;
-    std::vector<R> ones;
+    // In float, what does the lowest orders: from a pole on they grow for many bands, and whatever
+    // a step is rounded by goes on growing with it.
+    std::optional<LegendreStage<double>> precise;
+    static constexpr std::size_t kPreciseOrders = 16;
 
     // Orders that one task takes at a time: what they need of rows and of coefficients, which lie
     // far apart, comes by the cache line.
     static constexpr std::size_t kOrders = 4;
+
+    // What the sums of one order take.
+    template <class Q>
+    struct Sums {
+        AlignedVector<Q> even, odd;    // folded rows
+        AlignedVector<Q> rows, bands;  // if Q is not R
+        std::vector<Q> ones;
+        typename LegendreStage<Q>::Workspace legendre[kOrders];
+    };
 
     // Scratch of one task.
     struct Scratch {
         std::size_t first, count;  // orders
         std::size_t padded_rows, padded_bands;
         AlignedVector<R> rows;          // (orders, components, padded rows)
-        AlignedVector<R> even, odd;     // folded rows of one order
         AlignedVector<R> coefficients;  // (orders, bands, components)
-        typename LegendreStage<R>::Workspace legendre[kOrders];
+        Sums<R> sums;
+        Sums<double> precise;
 
         R* bands(std::size_t order, std::size_t components) {
             return coefficients.data() + order * padded_bands * components;
@@ -84,32 +99,103 @@ struct SphericalTransform::Impl {
         });
     }
 
+    // Calls body(stage, sums) with those that do the task's orders.
+    template <class Body>
+    void with_sums(Scratch& s, const Body& body) const {
+        if (precise && s.first < kPreciseOrders) {
+            body(*precise, s.precise);
+        } else {
+            body(legendre, s.sums);
+        }
+    }
+
+    template <class Q>
+    void prepare(const LegendreStage<Q>& stage, Sums<Q>& sums, const Scratch& s,
+                 std::size_t components) const {
+        sums.even.resize(components * stage.padded_rows());
+        sums.odd.resize(components * stage.padded_rows());
+        sums.ones.assign(rows, Q(1));
+        if (!std::is_same_v<Q, R>) {
+            sums.rows.resize(s.padded_rows);
+            sums.bands.resize(components * s.padded_bands);
+        }
+        for (std::size_t i = 0; i < s.count; ++i) {
+            stage.prepare(static_cast<int>(s.first + i), sums.legendre[i]);
+        }
+    }
+
+    template <class Q>
+    void analyze_order(const LegendreStage<Q>& stage, Sums<Q>& sums, Scratch& s, std::size_t i,
+                       std::size_t components) const {
+        const std::size_t padded = stage.padded_rows();
+        for (std::size_t c = 0; c < components; ++c) {
+            const R* values = s.rows.data() + (i * components + c) * s.padded_rows;
+            Q* even = sums.even.data() + c * padded;
+            Q* odd = sums.odd.data() + c * padded;
+            if constexpr (std::is_same_v<Q, R>) {
+                fold_rows(values, sums.ones.data(), rows, padded, even, odd);
+            } else {
+                std::copy_n(values, rows, sums.rows.data());
+                fold_rows(sums.rows.data(), sums.ones.data(), rows, padded, even, odd);
+            }
+        }
+        const std::size_t count = components * stage.padded_bands(static_cast<int>(s.first + i));
+        if constexpr (std::is_same_v<Q, R>) {
+            stage.analyze(components, sums.even.data(), sums.odd.data(), s.bands(i, components),
+                          sums.legendre[i]);
+        } else {
+            stage.analyze(components, sums.even.data(), sums.odd.data(), sums.bands.data(),
+                          sums.legendre[i]);
+            std::transform(sums.bands.data(), sums.bands.data() + count, s.bands(i, components),
+                           [](Q value) { return static_cast<R>(value); });
+        }
+    }
+
+    template <class Q>
+    void synthesize_order(const LegendreStage<Q>& stage, Sums<Q>& sums, Scratch& s, std::size_t i,
+                          std::size_t components) const {
+        const std::size_t padded = stage.padded_rows();
+        const std::size_t count = components * stage.padded_bands(static_cast<int>(s.first + i));
+        if constexpr (std::is_same_v<Q, R>) {
+            stage.synthesize(components, s.bands(i, components), sums.even.data(), sums.odd.data(),
+                             sums.legendre[i]);
+        } else {
+            std::copy_n(s.bands(i, components), count, sums.bands.data());
+            stage.synthesize(components, sums.bands.data(), sums.even.data(), sums.odd.data(),
+                             sums.legendre[i]);
+        }
+        for (std::size_t c = 0; c < components; ++c) {
+            R* values = s.rows.data() + (i * components + c) * s.padded_rows;
+            const Q* even = sums.even.data() + c * padded;
+            const Q* odd = sums.odd.data() + c * padded;
+            if constexpr (std::is_same_v<Q, R>) {
+                unfold_rows(even, odd, rows, values);
+            } else {
+                unfold_rows(even, odd, rows, sums.rows.data());
+                std::transform(sums.rows.data(), sums.rows.data() + rows, values,
+                               [](Q value) { return static_cast<R>(value); });
+            }
+        }
+    }
+
     // Bands of the task's orders from their rows, as (bands, components) with the real part
     // belonging to the cosine and the imaginary part to the sine harmonic.
     void analyze_orders(const RowSpectra<R>& spectra, Scratch& s) const {
-        const std::size_t padded = legendre.padded_rows(), components = spectra.components();
         spectra.read(s.first, s.count, s.rows.data());
-        for (std::size_t i = 0; i < s.count; ++i) {
-            for (std::size_t c = 0; c < components; ++c) {
-                fold_rows(s.rows.data() + (i * components + c) * s.padded_rows, ones.data(), rows,
-                          padded, s.even.data() + c * padded, s.odd.data() + c * padded);
+        with_sums(s, [&](const auto& stage, auto& sums) {
+            for (std::size_t i = 0; i < s.count; ++i) {
+                analyze_order(stage, sums, s, i, spectra.components());
             }
-            legendre.analyze(components, s.even.data(), s.odd.data(), s.bands(i, components),
-                             s.legendre[i]);
-        }
+        });
     }
 
     // The rows of the task's orders from their bands, which carry turn(m).
     void synthesize_orders(RowSpectra<R>& spectra, Scratch& s) const {
-        const std::size_t padded = legendre.padded_rows(), components = spectra.components();
-        for (std::size_t i = 0; i < s.count; ++i) {
-            legendre.synthesize(components, s.bands(i, components), s.even.data(), s.odd.data(),
-                                s.legendre[i]);
-            for (std::size_t c = 0; c < components; ++c) {
-                unfold_rows(s.even.data() + c * padded, s.odd.data() + c * padded, rows,
-                            s.rows.data() + (i * components + c) * s.padded_rows);
+        with_sums(s, [&](const auto& stage, auto& sums) {
+            for (std::size_t i = 0; i < s.count; ++i) {
+                synthesize_order(stage, sums, s, i, spectra.components());
             }
-        }
+        });
         spectra.write(s.first, s.count, s.rows.data());
     }
 
@@ -130,12 +216,9 @@ struct SphericalTransform::Impl {
             s.padded_rows = spectra.padded_rows();
             s.padded_bands = legendre.padded_bands(static_cast<int>(begin));
             s.rows.resize(s.count * components * s.padded_rows);
-            s.even.resize(components * legendre.padded_rows());
-            s.odd.resize(components * legendre.padded_rows());
             s.coefficients.resize(s.count * components * s.padded_bands);
-            for (std::size_t i = 0; i < s.count; ++i) {
-                legendre.prepare(static_cast<int>(begin + i), s.legendre[i]);
-            }
+            with_sums(s,
+                      [&](const auto& stage, auto& sums) { prepare(stage, sums, s, components); });
             body(s);
         });
     }

@@ -37,7 +37,7 @@ enum class TransformPrecision {
 /// largest error over the largest value, of normally distributed bands:
 ///     precision   512 rows: analysis, synthesis, error    1024 rows
 ///     full            37 ms   25 ms  3e-14                190 ms  128 ms  5e-14
-///     single          24 ms   16 ms  1.1e-6               125 ms   85 ms  2.1e-6
+///     single          24 ms   16 ms  8e-7                 125 ms   85 ms  1.1e-6
 class SphericalTransform {
   public:
     /// Requires rows >= 1, 0 <= lmax < rows and 2 lmax < columns (throws Error otherwise).
