@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "envmap/input_file.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/atomic_file.h"
 #include "core/checked.h"
 #include "core/error.h"
+#include "core/open_input.h"
 
 namespace airlight::detail {
 namespace {
@@ -52,24 +52,12 @@ const char* format_name(FileFormat format) {
     return "";
 }
 
-InputFile::InputFile(const std::string& path, std::size_t max_memory)
-    : name_(path == "-" ? "standard input" : path) {
-    if (path == "-" && isatty(STDIN_FILENO) == 1) {
-        throw Error(ErrorCode::usage, "is a terminal, and an image was expected", name_);
-    }
-    descriptor_ =
-        Descriptor(path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    struct stat status = {};
-    if (descriptor_.get() < 0 || fstat(descriptor_.get(), &status) != 0) {
-        const int error = errno;
-        throw Error(
-            ErrorCode::io,
-            error == ENOENT ? "does not exist" : "cannot be opened: " + system_message(error),
-            name_);
-    }
-    if (S_ISDIR(status.st_mode)) throw Error(ErrorCode::io, "is a directory", name_);
-    if (S_ISREG(status.st_mode) && path != "-") {
-        size_ = static_cast<std::size_t>(status.st_size);
+InputFile::InputFile(const std::string& path, std::size_t max_memory) {
+    OpenInput input = open_input(path, "an image");
+    name_ = std::move(input.name);
+    descriptor_ = std::move(input.descriptor);
+    if (input.has_size) {
+        size_ = input.size;
     } else {
         spool(max_memory);
     }

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "prt/mesh_io.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,8 +10,8 @@
 #include <utility>
 
 #include "core/atomic_file.h"
-#include "core/descriptor.h"
 #include "core/error.h"
+#include "core/open_input.h"
 #include "prt/mesh_text.h"
 #include "prt/raw_mesh.h"
 
@@ -95,43 +93,13 @@ RawMesh parse_raw(Source source) {
     source.refuse("is no OBJ, PLY, STL or OFF mesh");
 }
 
-struct OpenFile {
-    Descriptor descriptor;
-    bool has_size = false;
-    std::size_t size = 0;
-};
-
-OpenFile open_input(const std::string& path, const std::string& name) {
-    if (path == "-" && isatty(STDIN_FILENO) == 1) {
-        throw Error(ErrorCode::usage, "is a terminal, and a mesh was expected", name);
-    }
-    OpenFile file;
-    file.descriptor =
-        Descriptor(path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    struct stat status = {};
-    if (file.descriptor.get() < 0 || fstat(file.descriptor.get(), &status) != 0) {
-        const int error = errno;
-        throw Error(
-            ErrorCode::io,
-            error == ENOENT ? "does not exist" : "cannot be opened: " + system_message(error),
-            name);
-    }
-    if (S_ISDIR(status.st_mode)) throw Error(ErrorCode::io, "is a directory", name);
-    if (S_ISREG(status.st_mode) && path != "-") {
-        file.has_size = true;
-        file.size = static_cast<std::size_t>(status.st_size);
-    }
-    return file;
-}
-
 // Read, not mapped: a file that shrinks meanwhile would end the process.
-std::string load(const std::string& path, const std::string& name, MemoryBudget& budget) {
-    const OpenFile file = open_input(path, name);
+std::string load(const OpenInput& file, MemoryBudget& budget) {
     std::string bytes;
     if (file.has_size) {
         budget.take(file.size, 1, "the file");
         bytes.resize(file.size);
-        bytes.resize(read_at(file.descriptor.get(), bytes.data(), bytes.size(), 0, name));
+        bytes.resize(read_at(file.descriptor.get(), bytes.data(), bytes.size(), 0, file.name));
         return bytes;
     }
     for (;;) {
@@ -145,7 +113,7 @@ std::string load(const std::string& path, const std::string& name, MemoryBudget&
         bytes.resize(before + kBlock);
         const ssize_t got = ::read(file.descriptor.get(), bytes.data() + before, kBlock);
         if (got < 0 && errno != EINTR) {
-            throw Error(ErrorCode::io, "cannot be read: " + system_message(errno), name);
+            throw Error(ErrorCode::io, "cannot be read: " + system_message(errno), file.name);
         }
         bytes.resize(before + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
         if (got == 0) return bytes;
@@ -166,16 +134,16 @@ Mesh parse_mesh(std::string_view bytes, const std::string& name, const MeshReadO
 }
 
 Mesh read_mesh(const std::string& path, const MeshReadOptions& options, MeshReport* report) {
-    const std::string name = path == "-" ? "standard input" : path;
+    const OpenInput input = open_input(path, "a mesh");
     MeshReport figures;
-    MemoryBudget budget(options.max_memory, name);
+    MemoryBudget budget(options.max_memory, input.name);
     RawMesh raw;
     {
-        const std::string bytes = load(path, name, budget);
-        raw = parse_raw({name, bytes, budget, figures});
+        const std::string bytes = load(input, budget);
+        raw = parse_raw({input.name, bytes, budget, figures});
         budget.give_back(bytes.capacity());
     }
-    Mesh mesh = detail::build_mesh(std::move(raw), options, name, budget, figures);
+    Mesh mesh = detail::build_mesh(std::move(raw), options, input.name, budget, figures);
     if (report != nullptr) *report = std::move(figures);
     return mesh;
 }
@@ -185,7 +153,7 @@ bool looks_like_mesh(const std::string& path) {
         if (has_extension(path, extension)) return true;
     }
     try {
-        const OpenFile file = open_input(path, path);
+        const OpenInput file = open_input(path, "a mesh");
         if (!file.has_size) return false;
         std::string start(std::min(file.size, kStart), '\0');
         start.resize(read_at(file.descriptor.get(), start.data(), start.size(), 0, path));

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sh/brdf_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,6 +17,7 @@
 #include "core/atomic_file.h"
 #include "core/descriptor.h"
 #include "core/error.h"
+#include "core/open_input.h"
 
 namespace airlight {
 namespace {
@@ -31,37 +30,21 @@ constexpr double kLargestValue = 1e100;
 /// An open input, read from its start to its end.
 class Input {
   public:
-    explicit Input(const std::string& path)
-        : name_(path == "-" ? "standard input" : path),
-          descriptor_(path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-        struct stat status = {};
-        if (descriptor_.get() < 0 || fstat(descriptor_.get(), &status) != 0) {
-            const int error = errno;
-            throw Error(
-                ErrorCode::io,
-                error == ENOENT ? "does not exist" : "cannot be opened: " + system_message(error),
-                name_);
-        }
-        if (S_ISDIR(status.st_mode)) throw Error(ErrorCode::io, "is a directory", name_);
-        if (S_ISREG(status.st_mode) && path != "-") {
-            has_size_ = true;
-            size_ = static_cast<std::size_t>(status.st_size);
-        }
-    }
+    explicit Input(const std::string& path) : input_(open_input(path, "a BRDF table")) {}
 
-    const std::string& name() const { return name_; }
-    bool has_size() const { return has_size_; }
-    std::size_t size() const { return size_; }
+    const std::string& name() const { return input_.name; }
+    bool has_size() const { return input_.has_size; }
+    std::size_t size() const { return input_.size; }
 
     /// Fewer than asked for at the end only.
     std::size_t read(void* data, std::size_t bytes) const {
         std::size_t total = 0;
         while (total < bytes) {
             const ssize_t got =
-                ::read(descriptor_.get(), static_cast<char*>(data) + total, bytes - total);
+                ::read(input_.descriptor.get(), static_cast<char*>(data) + total, bytes - total);
             if (got < 0 && errno == EINTR) continue;
             if (got < 0) {
-                throw Error(ErrorCode::io, "cannot be read: " + system_message(errno), name_);
+                throw Error(ErrorCode::io, "cannot be read: " + system_message(errno), name());
             }
             if (got == 0) break;
             total += static_cast<std::size_t>(got);
@@ -70,10 +53,7 @@ class Input {
     }
 
   private:
-    std::string name_;
-    Descriptor descriptor_;
-    bool has_size_ = false;
-    std::size_t size_ = 0;
+    OpenInput input_;
 };
 
 bool host_is_little_endian() {

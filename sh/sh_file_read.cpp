@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +17,7 @@
 #include "core/constants.h"
 #include "core/descriptor.h"
 #include "core/error.h"
+#include "core/open_input.h"
 #include "sh/index.h"
 #include "sh/sh_file.h"
 #include "sh/sh_file_text.h"
@@ -347,22 +347,10 @@ ShFile parse_sh_file(const std::string& text, const std::string& name) {
 }
 
 ShFile read_sh_file(const std::string& path, std::size_t max_memory) {
-    const std::string name = path == "-" ? "standard input" : path;
-    if (path == "-" && isatty(STDIN_FILENO) == 1) {
-        throw Error(ErrorCode::usage, "is a terminal, and a coefficient file was expected", name);
-    }
-    const Descriptor file(path == "-" ? dup(STDIN_FILENO)
-                                      : open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    struct stat status = {};
-    if (file.get() < 0 || fstat(file.get(), &status) != 0) {
-        const int error = errno;
-        throw Error(
-            ErrorCode::io,
-            error == ENOENT ? "does not exist" : "cannot be opened: " + system_message(error),
-            name);
-    }
-    if (S_ISDIR(status.st_mode)) throw Error(ErrorCode::io, "is a directory", name);
-    return parse_sh_file(read_all(file.get(), max_memory / (1 + kMemoryPerByte), name), name);
+    const OpenInput input = open_input(path, "a coefficient file");
+    return parse_sh_file(
+        read_all(input.descriptor.get(), max_memory / (1 + kMemoryPerByte), input.name),
+        input.name);
 }
 
 bool is_json_file(const std::string& path) {

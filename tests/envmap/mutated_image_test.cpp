@@ -11,6 +11,7 @@
 #include "core/memory.h"
 #include "envmap/info.h"
 #include "envmap/io.h"
+#include "tests/core/mutate.h"
 #include "tests/core/scratch_directory.h"
 
 namespace airlight {
@@ -18,37 +19,6 @@ namespace {
 
 constexpr int kMutations = 1000;
 constexpr std::size_t kLimit = std::size_t{16} << 20;
-
-std::string mutate(std::string bytes, std::mt19937& random) {
-    const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };
-    const std::size_t changes = 1 + below(8);
-    for (std::size_t change = 0; change < changes && !bytes.empty(); ++change) {
-        // Half of the damage goes to the header, where it does most.
-        const std::size_t at =
-            below(random() % 2 == 0 ? std::min<std::size_t>(bytes.size(), 400) : bytes.size());
-        switch (below(6)) {
-            case 0:
-                bytes[at] = static_cast<char>(random());
-                break;
-            case 1:
-                bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
-                break;
-            case 2:
-                bytes[at] = static_cast<char>(below(2) == 0 ? 0xff : 0x7f);
-                break;
-            case 3:
-                bytes.erase(at, 1 + below(8));
-                break;
-            case 4:
-                bytes.insert(at, bytes.substr(below(bytes.size()), 1 + below(16)));
-                break;
-            default:
-                bytes.resize(at);
-                break;
-        }
-    }
-    return bytes;
-}
 
 std::vector<std::string> seeds() {
     std::vector<std::string> names;
