@@ -176,8 +176,10 @@ TEST_F(Brdf, FilesThatCannotBeUsedAreRefusedInOneSentence) {
     refuse("", "is empty");
     refuse(bytes.substr(0, 100), "is truncated: it has 100 of 36876 bytes");
     refuse(bytes + "x", "has 36877 bytes, 1 more than its header accounts for");
-    refuse(std::string("\xff\xff\xff\xff") + bytes.substr(4), "has -1 cells of theta_half");
-    refuse(std::string("\xff\xff\xff\x7f") + bytes.substr(4), "has 2147483647 cells of theta_half");
+    refuse(std::string("\xff\xff\xff\xff") + bytes.substr(4),
+           "is no BRDF table: it has -1 cells of theta_half");
+    refuse(std::string("\xff\xff\xff\x7f") + bytes.substr(4),
+           "is no BRDF table: it has 2147483647 cells of theta_half");
     std::string nan = bytes;
     const double none = std::nan("");
     std::memcpy(nan.data() + 12 + 8 * 17, &none, 8);
