@@ -32,4 +32,23 @@ inline double load_double(const char* bytes, bool big_endian) {
     return value;
 }
 
+/// Writes the number as `size` bytes, the least significant first.
+inline void store_unsigned(std::uint64_t value, std::size_t size, char* bytes) {
+    for (std::size_t i = 0; i < size; ++i) {
+        bytes[i] = static_cast<char>(static_cast<unsigned char>(value >> (8 * i)));
+    }
+}
+
+inline std::uint32_t bits_of(float value) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &value, sizeof(bits));
+    return bits;
+}
+
+inline std::uint64_t bits_of(double value) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &value, sizeof(bits));
+    return bits;
+}
+
 }  // namespace airlight::detail

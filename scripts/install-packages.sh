@@ -16,12 +16,14 @@ required="
     libglm-dev
     libgtest-dev
     libhwy-dev
+    libimath-dev
     libkissfft-dev
     libopenexr-dev
     libopenimageio-dev
     libopenmesh-dev
     libspdlog-dev
     libtbb-dev
+    libxxhash-dev
     nlohmann-json3-dev
 "
 # blender-data: the environment maps of the demo. libsharp-dev: the transforms that the benchmark is
