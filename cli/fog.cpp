@@ -16,6 +16,7 @@
 #include "cli/command.h"
 #include "cli/fog_files.h"
 #include "cli/fog_report.h"
+#include "cli/map_flags.h"
 #include "cli/numbers.h"
 #include "cli/phase_flag.h"
 #include "core/error.h"
@@ -303,22 +304,7 @@ void add_file_flags(const Command& command, FogRequest& request) {
              "EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab; TIFF: none, zip, lzw "
              "(default: zip)",
              [&](const std::string& text) { request.write.compression = text; });
-    add_flag(
-        command, "--nonfinite", "refuse|zero",
-        "NaN and infinite pixels of the input (default: refuse)", [&](const std::string& text) {
-            request.read.nonfinite =
-                static_cast<NonfinitePolicy>(parse_choice(text, "--nonfinite", {"refuse", "zero"}));
-        });
-    add_flag(command, "--negative", "keep|clamp", "Negative pixels of the input (default: keep)",
-             [&](const std::string& text) {
-                 request.read.negative = static_cast<NegativePolicy>(
-                     parse_choice(text, "--negative", {"keep", "clamp"}));
-             });
-    add_flag(command, "--layout", "latlong", "Take maps of any shape for lat-long maps",
-             [&](const std::string& text) {
-                 parse_choice(text, "--layout", {"latlong"});
-                 request.read.allow_any_aspect = true;
-             });
+    add_map_flags(command, request.read);
 }
 
 }  // namespace

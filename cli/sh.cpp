@@ -10,6 +10,7 @@
 
 #include "cli/command.h"
 #include "cli/engine_flags.h"
+#include "cli/map_flags.h"
 #include "cli/numbers.h"
 #include "cli/phase_flag.h"
 #include "core/atomic_file.h"
@@ -255,22 +256,7 @@ void add_file_flags(const Command& command, ShRequest& request) {
                  request.engine.format = parse_engine(text, "--format", true);
              });
     add_turn_flag(command, request.engine);
-    add_flag(
-        command, "--nonfinite", "refuse|zero",
-        "NaN and infinite pixels of the input (default: refuse)", [&](const std::string& text) {
-            request.read.nonfinite =
-                static_cast<NonfinitePolicy>(parse_choice(text, "--nonfinite", {"refuse", "zero"}));
-        });
-    add_flag(command, "--negative", "keep|clamp", "Negative pixels of the input (default: keep)",
-             [&](const std::string& text) {
-                 request.read.negative = static_cast<NegativePolicy>(
-                     parse_choice(text, "--negative", {"keep", "clamp"}));
-             });
-    add_flag(command, "--layout", "latlong", "Take maps of any shape for lat-long maps",
-             [&](const std::string& text) {
-                 parse_choice(text, "--layout", {"latlong"});
-                 request.read.allow_any_aspect = true;
-             });
+    add_map_flags(command, request.read);
 }
 
 }  // namespace
