@@ -14,6 +14,7 @@ namespace airlight {
 
 OpenInput open_input(const std::string& path, const std::string& expected) {
     OpenInput input;
+    if (path.empty()) throw Error(ErrorCode::usage, "the name of an input is empty");
     input.name = path == "-" ? "standard input" : path;
     if (path == "-" && isatty(STDIN_FILENO) == 1) {
         throw Error(ErrorCode::usage, "is a terminal, and " + expected + " was expected",

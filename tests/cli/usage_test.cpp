@@ -94,6 +94,21 @@ TEST(Usage, MistakesInTheCallAreNamed) {
     for (const BadCall& call : calls) expect_failure(call.arguments, kUsage, call.sentence);
 }
 
+TEST(Usage, AnEmptyNameOfAFileIsNamed) {
+    const ScratchDirectory scratch;
+    const std::vector<std::vector<std::string>> calls = {
+        {"info", ""},
+        {"sh", "", "-o", "-"},
+        {"export", "", "-o", "-", "--format", "three"},
+        {"brdf", "", scratch / "foggy.binary", "--optical-thickness", "1"},
+        {"fog", "", scratch / "foggy.exr", "--optical-thickness", "1"}};
+    for (const std::vector<std::string>& call : calls) {
+        const Outcome outcome = run(call);
+        EXPECT_EQ(outcome.status, kUsage) << call[0];
+        EXPECT_EQ(outcome.err, "airlight: error: the name of an input is empty\n") << call[0];
+    }
+}
+
 TEST(Usage, NumbersAreTakenWholeAndWithinTheirLimits) {
     const auto refuse = [](const std::string& flag, const std::string& value,
                            const std::string& limits) {
