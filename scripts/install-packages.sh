@@ -12,6 +12,7 @@ required="
     libbenchmark-dev
     libboost-dev
     libcli11-dev
+    libembree-dev
     libfmt-dev
     libglm-dev
     libgtest-dev

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Precomputed radiance transfer of the vertices of a mesh.
+//
+// Of a vertex with unit normal n that sees the distant light of directions omega with V = 1, and
+// with V = 0 where anything hides it (prt/ray_scene.h), in the world frame of sh/basis.h:
+//     visibility             v_lm = int_{n omega > 0} V Y_lm d omega
+//     transfer               t_lm = (1/pi) int V max(0, n omega) Y_lm d omega
+//     unshadowed transfer    the same with V = 1
+//     ambient occlusion      (1/pi) int V max(0, n omega) d omega = sqrt(4 pi) t_00, in [0, 1]
+//     bent normal            int_{n omega > 0} V omega d omega, as a unit vector
+// Exit radiance of a Lambertian surface is albedo · sum t_lm L_lm, so a white sky of radiance 1
+// gives ambient occlusion ([Sloan02] section 4; [Sun05] section 6.5, [Zhou07] section 4.2 multiply
+// it by fog). Order n means l < n, slots as in sh/index.h.
+//
+// V is sampled at `rays` spherical Fibonacci points of the hemisphere over the vertex
+// (prt/hemisphere.h). Without V both integrands are zonal about n and known in closed form, so only
+// the directions that are blocked are summed, and taken off:
+//     v = c (n) - (2 pi / N) sum_blocked Y,  c_l0 = sqrt(pi (2l+1)) int_0^1 P_l,
+//     t = a (n) / pi - (2 / N) sum_blocked (n omega) Y,  a the clamped cosine of sh/lobes.h.
+// Where nothing is blocked the result is exact to float.
+//
+// Error: relative RMS over the vertices of bunny and nefertiti, see bench/bake_bench.cpp.
+// Cost: that of the rays; all else is under 5 % (bench/bake_bench.cpp).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/progress.h"
+#include "prt/mesh.h"
+#include "prt/ray_scene.h"
+
+namespace airlight {
+
+inline constexpr int kLargestBakeOrder = 10;
+inline constexpr int kLargestBakeRays = 1 << 20;
+
+struct BakeOptions {
+    int order = 6;    ///< 1 … kLargestBakeOrder
+    int rays = 1024;  ///< directions of each vertex, 1 … kLargestBakeRays
+};
+
+/// Where the results of a run of vertices go, one row per vertex in the order in which they are
+/// baked. Null pointers are left out.
+struct BakeRows {
+    float* visibility = nullptr;           ///< (vertices, order^2)
+    float* transfer = nullptr;             ///< (vertices, order^2)
+    float* unshadowed_transfer = nullptr;  ///< (vertices, order^2)
+    float* ambient_occlusion = nullptr;    ///< (vertices), in [0, 1]
+    /// (vertices, 3), unit; the normal where no direction is free, or free ones cancel.
+    float* bent_normal = nullptr;
+
+    /// The rows from `row` on.
+    BakeRows from(std::size_t row, int order) const;
+};
+
+struct BakeReport {
+    std::uint64_t vertices = 0;
+    std::uint64_t rays = 0;     ///< directions asked for; those under the ground cost nothing
+    std::uint64_t blocked = 0;  ///< of these
+    /// Vertices more than half of whose directions are blocked.
+    std::uint64_t mostly_blocked = 0;
+};
+
+/// Bakes the vertices numbered vertices[0] … vertices[count - 1] of the mesh whose scene is given,
+/// into rows 0 … count - 1. In parallel; a row depends on the scene, the options and its vertex's
+/// number, position and normal alone, to the bit. For speed, list vertices in the order of
+/// prt/morton.h. Counts vertices at `progress`.
+///
+/// Throws Error: usage for options outside their domain; data for a mesh without a normal per
+/// vertex or with one whose squared length is not within 1e-5 of 1.
+BakeReport bake_vertices(const Mesh& mesh, const RayScene& scene, const BakeOptions& options,
+                         const std::uint32_t* vertices, std::size_t count, const BakeRows& rows,
+                         Progress* progress = nullptr);
+
+/// What to keep of a whole mesh.
+struct BakeKinds {
+    bool visibility = true, transfer = true, unshadowed_transfer = false;
+    bool ambient_occlusion = false, bent_normal = false;
+};
+
+/// All vertices of a mesh in the order of its file; arrays as in BakeRows, those left out empty.
+struct Bake {
+    int order = 0;
+    std::vector<float> visibility, transfer, unshadowed_transfer, ambient_occlusion, bent_normal;
+    BakeReport report;
+
+    BakeRows rows();
+};
+
+/// Bakes every vertex. Throws as bake_vertices, and Error(memory) when the results would take more
+/// than max_memory.
+Bake bake_mesh(const Mesh& mesh, const RayScene& scene, const BakeOptions& options = {},
+               const BakeKinds& kinds = {}, std::size_t max_memory = kDefaultMaxMemory,
+               Progress* progress = nullptr);
+
+}  // namespace airlight

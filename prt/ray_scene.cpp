@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "prt/ray_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "core/error.h"
+#include "prt/embree_scene.h"
+#include "prt/mesh_io.h"
+
+namespace airlight {
+namespace detail {
+
+EmbreeScene::~EmbreeScene() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+}
+
+}  // namespace detail
+namespace {
+
+using detail::EmbreeScene;
+using detail::kRayPacket;
+
+// Embree takes coordinates up to 1.8e18; its products of three of them must not overflow either.
+constexpr double kFarthest = 1e15;
+constexpr double kLiftOfDiagonal = 1e-5;
+constexpr double kLargestLiftOfDiagonal = 4e-3;
+
+double largest(const glm::dvec3& v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+float clamped(double value) {
+    return static_cast<float>(std::clamp(value, -kFarthest, kFarthest));
+}
+
+bool is_float(double value) {
+    return std::abs(value) <= std::numeric_limits<float>::max() &&
+           static_cast<double>(static_cast<float>(value)) == value;
+}
+
+bool is_finite(float value) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &value, sizeof(bits));
+    return (bits & 0x7f800000u) != 0x7f800000u;
+}
+
+void check_mesh(const Mesh& mesh, const std::string& what) {
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        const glm::dvec3& p = mesh.positions[v];
+        // Not the other way round, so that NaN is found.
+        const bool usable = std::abs(p.x) <= kLargestCoordinate &&
+                            std::abs(p.y) <= kLargestCoordinate &&
+                            std::abs(p.z) <= kLargestCoordinate;
+        if (!usable) {
+            throw Error(ErrorCode::data,
+                        fmt::format("vertex {} of the {} has a coordinate that is not finite or "
+                                    "beyond {}",
+                                    v, what, kLargestCoordinate));
+        }
+    }
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const glm::uvec3 triangle = mesh.triangles[t];
+        const std::size_t last = std::max({triangle.x, triangle.y, triangle.z});
+        if (last >= mesh.positions.size()) {
+            throw Error(ErrorCode::data,
+                        fmt::format("triangle {} of the {} names vertex {}, it has {}", t, what,
+                                    last, mesh.positions.size()));
+        }
+    }
+}
+
+// The box of all vertices that a triangle uses; of all vertices if there is no triangle.
+MeshBounds used_bounds(const Mesh& mesh) {
+    if (mesh.triangles.empty()) return mesh_bounds(mesh);
+    const glm::dvec3 first = mesh.positions[mesh.triangles[0].x];
+    MeshBounds bounds{first, first};
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            const glm::dvec3& p = mesh.positions[triangle[corner]];
+            bounds.minimum =
+                glm::dvec3(std::min(bounds.minimum.x, p.x), std::min(bounds.minimum.y, p.y),
+                           std::min(bounds.minimum.z, p.z));
+            bounds.maximum =
+                glm::dvec3(std::max(bounds.maximum.x, p.x), std::max(bounds.maximum.y, p.y),
+                           std::max(bounds.maximum.z, p.z));
+        }
+    }
+    return bounds;
+}
+
+bool watch_memory(void* pointer, std::ptrdiff_t bytes, bool post) {
+    EmbreeScene& scene = *static_cast<EmbreeScene*>(pointer);
+    const std::ptrdiff_t now = scene.bytes += bytes;
+    std::ptrdiff_t peak = scene.peak_bytes;
+    while (now > peak && !scene.peak_bytes.compare_exchange_weak(peak, now)) {
+    }
+    // Once it is over the limit Embree gives up at the next call that it makes beforehand.
+    if (bytes > 0 && now > 0 && static_cast<std::size_t>(now) > scene.max_memory) {
+        scene.over_limit = true;
+        return post;
+    }
+    return true;
+}
+
+[[noreturn]] void give_up(const EmbreeScene& scene, RTCError error) {
+    if (scene.over_limit) {
+        throw Error(ErrorCode::memory,
+                    fmt::format("the triangles and their tree need more than {}; --max-memory "
+                                "sets the limit",
+                                format_bytes(scene.max_memory)));
+    }
+    switch (error) {
+        case RTC_ERROR_OUT_OF_MEMORY:
+            throw Error(ErrorCode::memory, "no memory is left for the triangles and their tree");
+        case RTC_ERROR_UNSUPPORTED_CPU:
+            throw Error(ErrorCode::data, "Embree does not support this processor");
+        default:
+            throw Error(ErrorCode::data, fmt::format("Embree refused the scene with its error {}",
+                                                     static_cast<int>(error)));
+    }
+}
+
+void check(const EmbreeScene& scene) {
+    const RTCError error = rtcGetDeviceError(scene.device);
+    if (error != RTC_ERROR_NONE || scene.over_limit) give_up(scene, error);
+}
+
+struct GeometryRelease {
+    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+using GeometryOwner = std::unique_ptr<RTCGeometryTy, GeometryRelease>;
+
+// Returns how many triangles were too far away to be of use.
+std::uint64_t add_mesh(const EmbreeScene& scene, const Mesh& mesh, const glm::dvec3& centre,
+                       double scale) {
+    if (mesh.triangles.empty()) return 0;
+    const GeometryOwner geometry(rtcNewGeometry(scene.device, RTC_GEOMETRY_TYPE_TRIANGLE));
+    check(scene);
+    auto* positions = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                3 * sizeof(float), mesh.positions.size()));
+    check(scene);
+    auto* triangles = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                3 * sizeof(std::uint32_t), mesh.triangles.size()));
+    check(scene);
+    const auto is_far = [&](std::uint32_t v) {
+        return !(largest((mesh.positions[v] - centre) * scale) <= kFarthest);
+    };
+    for (const glm::dvec3& p : mesh.positions) {
+        const glm::dvec3 q = (p - centre) * scale;
+        for (int axis = 0; axis < 3; ++axis) *positions++ = clamped(q[axis]);
+    }
+    std::uint64_t far = 0;
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        const bool drop = is_far(triangle.x) || is_far(triangle.y) || is_far(triangle.z);
+        far += drop ? 1 : 0;
+        // A triangle that is a point is never hit.
+        for (int corner = 0; corner < 3; ++corner) {
+            *triangles++ = triangle[drop ? 0 : corner];
+        }
+    }
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometry(scene.scene, geometry.get());
+    check(scene);
+    return far;
+}
+
+}  // namespace
+
+RayScene::RayScene(const Mesh& mesh, const std::vector<const Mesh*>& occluders,
+                   const RaySceneOptions& options)
+    : embree_(std::make_unique<EmbreeScene>()) {
+    check_mesh(mesh, "mesh");
+    for (std::size_t i = 0; i < occluders.size(); ++i) {
+        check_mesh(*occluders[i], fmt::format("occluder {}", i + 1));
+    }
+    if (options.ground_height && !(std::abs(*options.ground_height) <= kLargestCoordinate)) {
+        throw Error(ErrorCode::data, fmt::format("the height of the ground is {}, it must be "
+                                                 "finite and within {}",
+                                                 *options.ground_height, kLargestCoordinate));
+    }
+
+    const MeshBounds bounds = used_bounds(mesh);
+    centre_ = 0.5 * bounds.minimum + 0.5 * bounds.maximum;
+    const glm::dvec3 half = 0.5 * bounds.maximum - 0.5 * bounds.minimum;
+    const double extent = largest(half);
+    if (extent > 0) {
+        int exponent = 0;
+        std::frexp(extent, &exponent);
+        scale_ = std::ldexp(1.0, std::clamp(-exponent, -400, 400));
+    }
+    const glm::dvec3 size = 2.0 * scale_ * half;
+    diagonal_ = std::sqrt(size.x * size.x + size.y * size.y + size.z * size.z);
+    const bool floats = std::all_of(
+        mesh.positions.begin(), mesh.positions.end(),
+        [](const glm::dvec3& p) { return is_float(p.x) && is_float(p.y) && is_float(p.z); });
+    position_ulp_ =
+        floats ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon();
+    if (options.ground_height) ground_ = clamped((*options.ground_height - centre_.y) * scale_);
+
+    EmbreeScene& scene = *embree_;
+    scene.max_memory = options.max_memory;
+    scene.device = rtcNewDevice(nullptr);
+    if (!scene.device) give_up(scene, rtcGetDeviceError(nullptr));
+    rtcSetDeviceMemoryMonitorFunction(scene.device, watch_memory, &scene);
+    scene.scene = rtcNewScene(scene.device);
+    check(scene);
+    rtcSetSceneFlags(scene.scene, RTC_SCENE_FLAG_ROBUST);
+    report_.far_triangles += add_mesh(scene, mesh, centre_, scale_);
+    report_.triangles += mesh.triangles.size();
+    for (const Mesh* occluder : occluders) {
+        report_.far_triangles += add_mesh(scene, *occluder, centre_, scale_);
+        report_.triangles += occluder->triangles.size();
+    }
+    rtcCommitScene(scene.scene);
+    check(scene);
+    report_.bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, scene.bytes));
+    report_.peak_bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, scene.peak_bytes));
+}
+
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+
+double RayScene::lift(const glm::dvec3& position) const {
+    const double scene_ulps =
+        4 * std::numeric_limits<float>::epsilon() * largest((position - centre_) * scale_);
+    const double position_ulps = 8 * position_ulp_ * largest(position) * scale_;
+    return std::max({kLiftOfDiagonal * diagonal_, scene_ulps,
+                     std::min(position_ulps, kLargestLiftOfDiagonal * diagonal_)}) /
+           scale_;
+}
+
+glm::vec3 RayScene::origin(const glm::dvec3& position, const glm::dvec3& normal) const {
+    const glm::dvec3 q = (position - centre_) * scale_ + lift(position) * scale_ * normal;
+    return {clamped(q.x), clamped(q.y), clamped(q.z)};
+}
+
+std::size_t RayScene::find_blocked(const glm::vec3& origin, std::size_t count, const float* x,
+                                   const float* y, const float* z, std::uint32_t* hits) const {
+    assert(count <= std::numeric_limits<std::uint32_t>::max());
+    std::uint32_t finite = is_finite(origin.x) && is_finite(origin.y) && is_finite(origin.z);
+    for (std::size_t i = 0; i < count; ++i) {
+        finite &= static_cast<std::uint32_t>(is_finite(x[i])) &
+                  static_cast<std::uint32_t>(is_finite(y[i])) &
+                  static_cast<std::uint32_t>(is_finite(z[i]));
+    }
+    if (!finite) throw Error(ErrorCode::data, "a ray's origin or direction is not finite");
+
+    std::size_t found = 0;
+    if (ground_ && origin.y < *ground_) {
+        for (; found < count; ++found) hits[found] = static_cast<std::uint32_t>(found);
+        return found;
+    }
+    const float lowest = ground_ ? 0.0f : -std::numeric_limits<float>::max();
+    RTCIntersectContext context = detail::incoherent_context();
+    const detail::FlushDenormals flush;
+    alignas(64) RTCRay rays[kRayPacket];
+    for (std::size_t begin = 0; begin < count; begin += kRayPacket) {
+        const std::size_t size = std::min(kRayPacket, count - begin);
+        for (std::size_t i = 0; i < size; ++i) {
+            RTCRay& ray = rays[i];
+            ray.org_x = origin.x;
+            ray.org_y = origin.y;
+            ray.org_z = origin.z;
+            ray.tnear = 0;
+            ray.dir_x = x[begin + i];
+            ray.dir_y = y[begin + i];
+            ray.dir_z = z[begin + i];
+            ray.time = 0;
+            // Embree leaves rays alone whose end lies before their beginning, and marks with one
+            // those that hit.
+            ray.tfar = ray.dir_y >= lowest ? std::numeric_limits<float>::infinity() : -1.0f;
+            ray.mask = 0xffffffff;
+            ray.id = 0;
+            ray.flags = 0;
+        }
+        rtcOccluded1M(embree_->scene, &context, rays, static_cast<unsigned>(size), sizeof(RTCRay));
+        for (std::size_t i = 0; i < size; ++i) {
+            hits[found] = static_cast<std::uint32_t>(begin + i);
+            found += rays[i].tfar < 0 ? 1 : 0;
+        }
+    }
+    return found;
+}
+
+}  // namespace airlight

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// What hides the light from the vertices of a mesh: triangles in Embree, and a ground plane.
+//
+// Embree works in single precision, so nothing reaches it in the coordinates of the file. The scene
+// has units of its own: p' = scale (p - centre) in double, then rounded, with the centre of the
+// mesh's triangles as the origin and a scale that is a power of two and puts the largest
+// |coordinate| of theirs into [1/2, 1]. A mesh far from the origin or in small units loses nothing.
+//
+// A ray must not be stopped by the triangles that it starts from. Its origin is lifted off the
+// vertex along the normal, with everything in units of the scene, by the largest of
+//     1e-5 d                         d the diagonal of the box of the mesh's triangles;
+//     4 float ulps of |p'|           where Embree's own rounding is larger (isolated vertices);
+//     min(8 ulps of |p|, 4e-3 d)     what the coordinates of the mesh were rounded to before:
+//                                    float ulps if all of them are floats, else double ones.
+// With this no vertex of a convex mesh is shadowed, up to 10^4 radii from the origin, also when its
+// positions were rounded to float there; without it, 38 to 99 % of the rays of a sphere are stopped
+// by the triangle that they start from. What is nearer to a vertex than the lift is missed. Rays
+// begin at the lifted origin itself, and Embree's traversal is the watertight one
+// (RTC_SCENE_FLAG_ROBUST).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/checked.h"
+#include "prt/mesh.h"
+
+namespace airlight {
+
+struct RaySceneOptions {
+    /// Everything under y = ground_height is solid and reaches to infinity; world units.
+    std::optional<double> ground_height;
+    /// Bytes that Embree's copies of the meshes and its tree may occupy together.
+    std::size_t max_memory = kDefaultMaxMemory;
+};
+
+struct RaySceneReport {
+    std::uint64_t triangles = 0;  ///< of the mesh and all occluders
+    /// Triangles of occluders that lie beyond 1e15 times the size of the mesh; they hide nothing.
+    std::uint64_t far_triangles = 0;
+    std::size_t bytes = 0;       ///< of Embree's buffers and tree
+    std::size_t peak_bytes = 0;  ///< while they were built
+};
+
+namespace detail {
+struct EmbreeScene;
+}
+
+/// Immutable once built; all functions may be called from any thread.
+class RayScene {
+  public:
+    /// The triangles of `mesh`, whose vertices are baked, and of `occluders`, in the same world.
+    /// All triangles hide light from both sides. The meshes are not needed afterwards.
+    ///
+    /// Throws Error: data for positions that are not finite or beyond kLargestCoordinate, triangles
+    /// of vertices that do not exist, a ground height that is neither; memory beyond max_memory, or
+    /// when there is none left; data with Embree's words for what else it refuses.
+    /// Cost: 1.1 us and about 120 bytes per triangle, in parallel.
+    explicit RayScene(const Mesh& mesh, const std::vector<const Mesh*>& occluders = {},
+                      const RaySceneOptions& options = {});
+    ~RayScene();
+    RayScene(RayScene&&) noexcept;
+    RayScene& operator=(RayScene&&) noexcept;
+
+    const RaySceneReport& report() const { return report_; }
+
+    /// Where the rays of a vertex of the mesh begin, in units of the scene: lifted along its unit
+    /// normal. |coordinates| beyond 1e15 (isolated vertices far out) end there.
+    glm::vec3 origin(const glm::dvec3& position, const glm::dvec3& normal) const;
+
+    /// The lift of that origin, in world units.
+    double lift(const glm::dvec3& position) const;
+
+    /// Which of `count` < 2^32 rays from `origin` meet anything: writes their numbers to
+    /// hits[count], ascending, and returns how many. Directions are structures of arrays of any
+    /// length but 0.
+    ///
+    /// Throws Error(data) if the origin or a direction is not finite; Embree would end the process.
+    /// Denormals are flushed to zero while Embree works and not outside. The answer for a ray does
+    /// not depend on the others or on threads. Cost: Embree's, 0.1 to 0.2 us a ray, and 4 ns.
+    std::size_t find_blocked(const glm::vec3& origin, std::size_t count, const float* x,
+                             const float* y, const float* z, std::uint32_t* hits) const;
+
+    /// For sources that include prt/embree_scene.h.
+    const detail::EmbreeScene& embree() const { return *embree_; }
+
+  private:
+    std::unique_ptr<detail::EmbreeScene> embree_;
+    RaySceneReport report_;
+    glm::dvec3 centre_{0.0};
+    double scale_ = 1;             ///< scene units per world unit
+    double diagonal_ = 0;          ///< of the mesh's triangles, scene units
+    double position_ulp_ = 0;      ///< relative: of float or of double
+    std::optional<float> ground_;  ///< scene units
+};
+
+}  // namespace airlight
