@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays per CPU second of the baker, beside Embree's alone, on one thread.
 //
-// In each round every contender takes a turn on each block of 256 vertices, in the same rays:
+// In each round every contender takes a turn on each block of 512 vertices, in the same rays:
 //     rays alone       a loop that only calls rtcOccluded1M with 256 rays, made before the clock
 //     bake_vertices    visibility and shadowed transfer, rays made and checked, results written
 //     straightforward  rtcOccluded1 ray by ray and the basis evaluated for each that is free
@@ -32,7 +32,7 @@
 namespace airlight {
 namespace {
 
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kBlock = 512;
 constexpr int kContenders = 3;
 
 Mesh bumpy_sphere(unsigned steps) {

@@ -264,24 +264,19 @@ std::size_t RayScene::find_blocked(const glm::vec3& origin, std::size_t count, c
     RTCIntersectContext context = detail::incoherent_context();
     const detail::FlushDenormals flush;
     alignas(64) RTCRay rays[kRayPacket];
+    for (std::size_t i = 0; i < std::min(kRayPacket, count); ++i) {
+        rays[i] = {origin.x, origin.y, origin.z, 0, 0, 0, 0, 0, 0, 0xffffffff, 0, 0};
+    }
     for (std::size_t begin = 0; begin < count; begin += kRayPacket) {
         const std::size_t size = std::min(kRayPacket, count - begin);
         for (std::size_t i = 0; i < size; ++i) {
             RTCRay& ray = rays[i];
-            ray.org_x = origin.x;
-            ray.org_y = origin.y;
-            ray.org_z = origin.z;
-            ray.tnear = 0;
             ray.dir_x = x[begin + i];
             ray.dir_y = y[begin + i];
             ray.dir_z = z[begin + i];
-            ray.time = 0;
             // Embree leaves rays alone whose end lies before their beginning, and marks with one
             // those that hit.
             ray.tfar = ray.dir_y >= lowest ? std::numeric_limits<float>::infinity() : -1.0f;
-            ray.mask = 0xffffffff;
-            ray.id = 0;
-            ray.flags = 0;
         }
         rtcOccluded1M(embree_->scene, &context, rays, static_cast<unsigned>(size), sizeof(RTCRay));
         for (std::size_t i = 0; i < size; ++i) {
