@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <cctype>
-#include <filesystem>
 #include <memory>
 
 #include "cli/command.h"
 #include "cli/engine_flags.h"
+#include "cli/export_prt.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "prt/prt_reader.h"
 #include "sh/sh_file.h"
 
 namespace airlight {
@@ -20,15 +20,10 @@ struct ExportRequest {
     std::vector<std::string> inputs;
     std::string output;
     EngineFlags engine;
+    PrtExport prt;
 };
 
-bool is_prt(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension == ".prt";
-}
-
-void check(const ExportRequest& request, const CommonOptions& common) {
+void check_paths(const ExportRequest& request) {
     if (request.inputs.size() != 1) {
         throw Error(ErrorCode::usage, request.inputs.empty()
                                           ? "an input is missing (see airlight export --help)"
@@ -37,11 +32,12 @@ void check(const ExportRequest& request, const CommonOptions& common) {
     if (request.output.empty()) {
         throw Error(ErrorCode::usage, "the output is missing: give -o FILE");
     }
-    if (is_prt(request.inputs[0])) {
-        throw Error(ErrorCode::usage,
-                    "transfer (.prt) cannot be exported by this version, only coefficient files of "
-                    "airlight sh",
-                    request.inputs[0]);
+}
+
+void check_light(const ExportRequest& request, const CommonOptions& common) {
+    if (request.prt.kind || !request.prt.mesh.empty()) {
+        throw Error(ErrorCode::usage, "is for .prt files alone",
+                    request.prt.kind ? "--kind" : "--mesh");
     }
     if (!request.engine.format) {
         throw Error(ErrorCode::usage,
@@ -51,8 +47,16 @@ void check(const ExportRequest& request, const CommonOptions& common) {
 }
 
 void run_export(const ExportRequest& request, const CommonOptions& common) {
-    check(request, common);
+    check_paths(request);
     const std::string& input = request.inputs[0];
+    if (looks_like_prt(input)) {
+        if (request.engine.format || request.engine.turn) {
+            throw Error(ErrorCode::usage, "is for coefficient files alone",
+                        request.engine.format ? "--format" : "--turn");
+        }
+        return export_prt(request.prt, input, request.output, common);
+    }
+    check_light(request, common);
     const ShFile light = read_sh_file(input, common.max_memory);
     const std::string name = input == "-" ? "standard input" : input;
     if (light.order > 3) {
@@ -74,14 +78,19 @@ void run_export(const ExportRequest& request, const CommonOptions& common) {
 Command declare_export(CLI::App& program) {
     Command command = declare_command(
         program, "export", "IN -o OUT",
-        "Turn a coefficient file of airlight sh into what engines read",
+        "Turn a coefficient file of airlight sh into what engines read, and a .prt file into .npy "
+        "or "
+        ".ply",
         "  airlight sh room.exr -o room.json\n"
         "  airlight export room.json -o sh.txt --format filament\n"
         "  airlight export room.json -o room.gltf --format gltf\n"
+        "  airlight export bunny.prt -o bunny.npy --kind visibility\n"
+        "  airlight export bunny.prt --mesh bunny.obj -o bunny.ply\n"
         "Engines take three degrees: windows should be chosen with airlight sh --order 3.");
     const auto request = std::make_shared<ExportRequest>();
     command.app
-        ->add_option("files", request->inputs, "A coefficient file (.json; - is standard input)")
+        ->add_option("files", request->inputs,
+                     "A coefficient file (.json; - is standard input), or a .prt file")
         ->option_text(" ");
     add_flag(command, "-o,--output", "FILE", "What to write (- is standard output)",
              [request](const std::string& text) { request->output = text; });
@@ -90,6 +99,7 @@ Command declare_export(CLI::App& program) {
                  request->engine.format = parse_engine(text, "--format", false);
              });
     add_turn_flag(command, request->engine);
+    add_prt_flags(command, request->prt);
     add_force_flag(command);
     add_max_memory_flag(command);
     command.run = [request, common = command.common] { run_export(*request, *common); };

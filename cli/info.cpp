@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// airlight info: what an image, a mesh, a coefficient file or a BRDF table holds.
+// airlight info: what an image, a mesh, a coefficient file, a BRDF table or a .prt file holds.
 #include "envmap/info.h"
 
 #include <fmt/format.h>
@@ -12,6 +12,7 @@
 #include "cli/brdf_report.h"
 #include "cli/command.h"
 #include "cli/info_mesh.h"
+#include "cli/info_prt.h"
 #include "cli/info_sh.h"
 #include "core/atomic_file.h"
 #include "core/descriptor.h"
@@ -31,6 +32,7 @@ struct FileFigures {
     std::optional<ShFile> light;      ///< of a coefficient file, which has none of the above
     std::optional<BrdfFigures> brdf;  ///< likewise of a BRDF table
     std::optional<MeshFigures> mesh;  ///< likewise of a mesh
+    std::optional<PrtInfo> prt;       ///< likewise of a .prt file
 };
 
 // A pipe can be read once, and the header is wanted before the pixels: both take a copy.
@@ -72,6 +74,10 @@ FileFigures look_into(const std::string& path, std::size_t max_memory) {
     FileFigures file;
     file.path = path;
     try {
+        if (looks_like_prt(readable)) {
+            file.prt = look_into_prt(readable, max_memory);
+            return file;
+        }
         if (is_json_file(readable)) {
             file.light = read_sh_file(readable, max_memory);
             return file;
@@ -116,6 +122,7 @@ bool is_ours(const Attribute& attribute) {
 std::string to_lines(const FileFigures& file, bool all_attributes) {
     if (file.light) return to_lines(file.path, *file.light);
     if (file.mesh) return to_lines(file.path, *file.mesh);
+    if (file.prt) return to_lines(file.path, *file.prt);
     if (file.brdf) return file.path + "\n" + to_lines(*file.brdf);
     const ImageInfo& header = file.header;
     std::string text = fmt::format("{}\n  {} x {} pixels, {}, channels {}, {}", file.path,
@@ -163,6 +170,7 @@ nlohmann::ordered_json to_json(const Attribute& attribute) {
 nlohmann::ordered_json to_json(const FileFigures& file) {
     if (file.light) return to_json(file.path, *file.light);
     if (file.mesh) return to_json(file.path, *file.mesh);
+    if (file.prt) return to_json(file.path, *file.prt);
     if (file.brdf) {
         nlohmann::ordered_json json = {{"file", file.path}, {"format", "brdf"}};
         json.update(to_json(*file.brdf));
@@ -228,20 +236,21 @@ void run_info(const std::vector<std::string>& paths, const CommonOptions& common
 }  // namespace
 
 Command declare_info(CLI::App& program) {
-    Command command =
-        declare_command(program, "info", "FILE...",
-                        "Tell what an image, a mesh, a coefficient file or a BRDF table holds",
-                        "  airlight info room.exr foggy.exr\n"
-                        "  airlight info room.exr --json\n"
-                        "  airlight info bunny.obj\n"
-                        "  airlight info paint.binary\n"
-                        "With -v, all attributes of the file are listed.");
+    Command command = declare_command(
+        program, "info", "FILE...",
+        "Tell what an image, a mesh, a coefficient file, a BRDF table or a .prt file holds",
+        "  airlight info room.exr foggy.exr\n"
+        "  airlight info room.exr --json\n"
+        "  airlight info bunny.obj\n"
+        "  airlight info paint.binary\n"
+        "  airlight info bunny.prt\n"
+        "With -v, all attributes of the file are listed.");
     const auto paths = std::make_shared<std::vector<std::string>>();
     command.app
         ->add_option(
             "files", *paths,
             "Images (.exr, .hdr, .pfm, .tif), meshes (.obj, .ply, .stl, .off), coefficient files "
-            "of airlight sh, BRDF tables (.binary); - is standard input")
+            "of airlight sh, BRDF tables (.binary), transfer (.prt); - is standard input")
         ->option_text(" ");
     add_json_flag(command, "Print the figures as JSON");
     add_max_memory_flag(command);

@@ -13,6 +13,7 @@
 #include "core/atomic_file.h"
 #include "core/descriptor.h"
 #include "core/error.h"
+#include "prt/mesh_text.h"
 #include "prt/prt_contents.h"
 #include "prt/prt_layout.h"
 #include "prt/prt_values.h"
@@ -157,6 +158,9 @@ PrtReader::~PrtReader() = default;
 PrtReader::PrtReader(PrtReader&&) noexcept = default;
 PrtReader& PrtReader::operator=(PrtReader&&) noexcept = default;
 
+const std::string& PrtReader::path() const {
+    return state_->input.path;
+}
 const PrtHeader& PrtReader::header() const {
     return state_->header;
 }
@@ -229,8 +233,13 @@ void PrtReader::verify() const {
 }
 
 bool looks_like_prt(const std::string& path) {
+    constexpr std::string_view kExtension = ".prt";
+    if (path.size() > kExtension.size() && detail::lower_case(std::string_view(path).substr(
+                                               path.size() - kExtension.size())) == kExtension) {
+        return true;
+    }
     const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    char start[8];
+    char start[detail::kPrtMagic.size()];
     const ssize_t got = file.get() < 0 ? 0 : pread(file.get(), start, sizeof start, 0);
     return got == static_cast<ssize_t>(sizeof start) &&
            std::string_view(start, sizeof start) == detail::kPrtMagic;

@@ -35,6 +35,8 @@ class PrtReader {
     PrtReader(PrtReader&&) noexcept;
     PrtReader& operator=(PrtReader&&) noexcept;
 
+    /// As it was given.
+    const std::string& path() const;
     const PrtHeader& header() const;
     /// The JSON object that the writer was given.
     const std::string& report() const;
@@ -66,7 +68,7 @@ class PrtReader {
     std::unique_ptr<State> state_;
 };
 
-/// Whether a file begins as a .prt file does. False if it cannot be read.
+/// Whether a file has the name of a .prt file or begins like one.
 bool looks_like_prt(const std::string& path);
 
 }  // namespace airlight

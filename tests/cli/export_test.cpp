@@ -91,7 +91,15 @@ TEST(ExportCommand, MistakesInTheCallAreNamed) {
     refuse({"a.json", "-o", "c"}, "the format is missing: give --format filament, three");
     refuse({"a.json", "-o", "c", "--format", "json"},
            "--format: 'json' is unknown; it can be filament");
-    refuse({"bunny.PRT", "-o", "c.npy"}, "bunny.PRT: transfer (.prt) cannot be exported");
+    refuse({"a.json", "-o", "c", "--format", "unity", "--kind", "transfer"},
+           "--kind: is for .prt files alone");
+    refuse({"bunny.PRT", "-o", "c.npy", "--format", "unity"},
+           "--format: is for coefficient files alone");
+    refuse({"bunny.PRT", "-o", "c.txt"}, "c.txt: a .prt file becomes .npy or .ply");
+    refuse({"bunny.PRT", "-o", "c.ply"}, "give --mesh");
+    refuse({"bunny.PRT", "-o", "c.npy", "--mesh", "a.obj"}, "--mesh: is for .ply alone");
+    refuse({"bunny.PRT", "-o", "c.npy", "--kind", "light"},
+           "--kind: 'light' is unknown; it can be visibility, transfer, bent_normal");
 }
 
 TEST(ExportCommand, BadFilesAreRefusedInOneSentence) {
