@@ -27,14 +27,15 @@ inline constexpr std::uint32_t kMostPrtBlockRows = std::uint32_t{1} << 20;
 
 /// What a table holds, row by row. Coefficients are in the world frame, slots as in sh/index.h.
 enum class PrtKind : std::uint32_t {
-    visibility = 1,         ///< n^2 coefficients v_lm, the integral of V Y_lm over n.w > 0
-    transfer = 2,           ///< n^2 coefficients t_lm; exit radiance is albedo * (t . L)
-    bent_normal = 3,        ///< 3: the mean unblocked direction, world frame
-    ambient_occlusion = 4,  ///< 1: exit radiance under a white sky at albedo 1, in [0, 1]
-    visibility_error = 5,   ///< 1: estimate of the error of the row of visibility
-    transfer_error = 6,     ///< 1: estimate of the error of the row of transfer
-    ray_count = 7,          ///< 1: rays that were traced for the row; uint32
-    vertex_index = 8,       ///< 1: the vertex of the mesh that the row is of; uint32
+    visibility = 1,           ///< n^2 coefficients v_lm, the integral of V Y_lm over n.w > 0
+    transfer = 2,             ///< n^2 coefficients t_lm; exit radiance is albedo * (t . L)
+    bent_normal = 3,          ///< 3: the mean unblocked direction, unit, world frame
+    ambient_occlusion = 4,    ///< 1: exit radiance under a white sky at albedo 1, in [0, 1]
+    visibility_error = 5,     ///< 1: estimate of the error of the row of visibility
+    transfer_error = 6,       ///< 1: estimate of the error of the row of transfer
+    ray_count = 7,            ///< 1: rays that were traced for the row; uint32
+    vertex_index = 8,         ///< 1: the vertex of the mesh that the row is of; uint32
+    unshadowed_transfer = 9,  ///< n^2 coefficients: transfer with V = 1
 };
 
 inline constexpr NamedMethod<PrtKind> kPrtKinds[] = {
@@ -46,6 +47,7 @@ inline constexpr NamedMethod<PrtKind> kPrtKinds[] = {
     {PrtKind::transfer_error, "transfer_error"},
     {PrtKind::ray_count, "ray_count"},
     {PrtKind::vertex_index, "vertex_index"},
+    {PrtKind::unshadowed_transfer, "unshadowed_transfer"},
 };
 
 /// How a table's numbers are stored.

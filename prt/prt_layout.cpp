@@ -17,6 +17,7 @@ std::size_t prt_components(PrtKind kind, int order) {
     switch (kind) {
         case PrtKind::visibility:
         case PrtKind::transfer:
+        case PrtKind::unshadowed_transfer:
             return sh_count(order);
         case PrtKind::bent_normal:
             return 3;

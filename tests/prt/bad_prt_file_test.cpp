@@ -112,7 +112,7 @@ TEST(BadPrtFile, HeadersThatCannotBeAreRefusedEvenWhenSigned) {
     expect_complaint(changed(104, 4, ~0u), "has 4294967295 tables");
     expect_complaint(changed(104, 4, 0), "has 0 tables");
     expect_complaint(changed(108, 4, 1), "has a reserved field");
-    expect_complaint(changed(112, 4, 9), "has a table of the kind 9, which is unknown");
+    expect_complaint(changed(112, 4, 99), "has a table of the kind 99, which is unknown");
     expect_complaint(changed(112, 4, 2), "has two tables of the kind transfer");
     expect_complaint(changed(116, 4, 0), "stores visibility as type 0, which is unknown");
     expect_complaint(changed(116, 4, 3), "stores visibility as uint32");
