@@ -154,7 +154,39 @@ struct Contest {
     }
 };
 
-void run(const std::string& file, unsigned steps, std::size_t most, int rounds,
+double relative_rms(const std::vector<float>& values, const std::vector<float>& truth) {
+    double error = 0, size = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        error += std::pow(double(values[i]) - truth[i], 2);
+        size += std::pow(double(truth[i]), 2);
+    }
+    return std::sqrt(error / size);
+}
+
+// Error and time of each number of rays, against a bake of very many.
+void print_errors(const Mesh& mesh, const RayScene& scene, BakeOptions options,
+                  const std::vector<std::uint32_t>& vertices, int truth_rays) {
+    const std::size_t size = vertices.size() * sh_count(options.order);
+    std::vector<float> seen(size), sent(size), true_seen(size), true_sent(size);
+    const auto bake = [&](int rays, std::vector<float>& visibility, std::vector<float>& transfer) {
+        options.rays = rays;
+        BakeRows rows;
+        rows.visibility = visibility.data();
+        rows.transfer = transfer.data();
+        return measure(
+            [&] { bake_vertices(mesh, scene, options, vertices.data(), vertices.size(), rows); });
+    };
+    bake(truth_rays, true_seen, true_sent);
+    fmt::print("\nrelative RMS error against {} rays\n{:>8}{:>14}{:>14}{:>20}\n", truth_rays,
+               "rays", "visibility", "transfer", "CPU us per vertex");
+    for (int rays = 128; rays < truth_rays; rays *= 2) {
+        const double cpu = bake(rays, seen, sent).cpu;
+        fmt::print("{:8}{:14.5f}{:14.5f}{:20.1f}\n", rays, relative_rms(seen, true_seen),
+                   relative_rms(sent, true_sent), 1e6 * cpu / double(vertices.size()));
+    }
+}
+
+void run(const std::string& file, unsigned steps, std::size_t most, int rounds, int truth_rays,
          const BakeOptions& options) {
     const ThreadLimit limit(1);
     const Mesh mesh = file.empty() ? bumpy_sphere(steps) : read_mesh(file);
@@ -216,6 +248,7 @@ void run(const std::string& file, unsigned steps, std::size_t most, int rounds,
         fmt::print("{:18}{:12.2f}{:13.1f}%{:20.2f}\n", names[who], median(speed[who]) / 1e6,
                    100 * median(of_rays[who]), median(of_plain[who]));
     }
+    if (truth_rays > 0) print_errors(mesh, scene, options, vertices, truth_rays);
 }
 
 }  // namespace
@@ -226,7 +259,7 @@ int main(int argc, char** argv) {
     std::string file;
     unsigned steps = 180;
     std::size_t most = 4096;
-    int rounds = 5;
+    int rounds = 5, truth_rays = 0;
     airlight::BakeOptions options;
     app.add_option("mesh", file, "OBJ, PLY, STL or OFF");
     app.add_option("--steps", steps, "rows of the bumpy sphere");
@@ -234,9 +267,10 @@ int main(int argc, char** argv) {
     app.add_option("--rounds", rounds)->check(CLI::Range(1, 1000));
     app.add_option("--order", options.order);
     app.add_option("--rays", options.rays);
+    app.add_option("--truth", truth_rays, "also errors, against a bake of so many rays");
     CLI11_PARSE(app, argc, argv);
     try {
-        airlight::run(file, steps, most, rounds, options);
+        airlight::run(file, steps, most, rounds, truth_rays, options);
     } catch (const airlight::Error& error) {
         fmt::print(stderr, "bake_bench: {}\n", error.describe());
         return 1;

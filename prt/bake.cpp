@@ -99,15 +99,13 @@ class BlockedSums {
                       const glm::mat3& frame) {
         frames_[k] = frame;
         const std::size_t count = plan_.local.count();
-        float* const x = turned_.data();
         std::size_t blocked = 0;
         for (std::size_t begin = 0; begin < count; begin += kDirections) {
             const std::size_t size = std::min(kDirections, count - begin);
             if (pending_ + size > kPending) sum();
-            turn(frame, size, plan_.local.x.data() + begin, plan_.local.y.data() + begin,
-                 plan_.local.z.data() + begin, x);
             const std::size_t found = scene.find_blocked(
-                origin, size, x, x + kDirections, x + 2 * kDirections, hits_.data() + pending_);
+                origin, frame, size, plan_.local.x.data() + begin, plan_.local.y.data() + begin,
+                plan_.local.z.data() + begin, hits_.data() + pending_);
             if (found > 0) segments_.push_back({k, begin, pending_, found});
             pending_ += found;
             blocked += found;

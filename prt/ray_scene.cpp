@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "core/error.h"
+#include "prt/aim_rays.h"
 #include "prt/embree_scene.h"
 #include "prt/mesh_io.h"
 
@@ -43,12 +43,6 @@ float clamped(double value) {
 bool is_float(double value) {
     return std::abs(value) <= std::numeric_limits<float>::max() &&
            static_cast<double>(static_cast<float>(value)) == value;
-}
-
-bool is_finite(float value) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &value, sizeof(bits));
-    return (bits & 0x7f800000u) != 0x7f800000u;
 }
 
 void check_mesh(const Mesh& mesh, const std::string& what) {
@@ -173,6 +167,13 @@ std::uint64_t add_mesh(const EmbreeScene& scene, const Mesh& mesh, const glm::dv
     return far;
 }
 
+// Embree leaves rays alone whose end lies before their beginning.
+void stop_at_ground(float height, std::size_t count, RTCRay* rays) {
+    for (std::size_t i = 0; i < count; ++i) {
+        if (rays[i].dir_y < 0 || rays[i].org_y < height) rays[i].tfar = -1;
+    }
+}
+
 }  // namespace
 
 RayScene::RayScene(const Mesh& mesh, const std::vector<const Mesh*>& occluders,
@@ -244,41 +245,31 @@ glm::vec3 RayScene::origin(const glm::dvec3& position, const glm::dvec3& normal)
     return {clamped(q.x), clamped(q.y), clamped(q.z)};
 }
 
-std::size_t RayScene::find_blocked(const glm::vec3& origin, std::size_t count, const float* x,
-                                   const float* y, const float* z, std::uint32_t* hits) const {
+std::size_t RayScene::find_blocked(const glm::vec3& origin, const glm::mat3& frame,
+                                   std::size_t count, const float* x, const float* y,
+                                   const float* z, std::uint32_t* hits) const {
     assert(count <= std::numeric_limits<std::uint32_t>::max());
-    std::uint32_t finite = is_finite(origin.x) && is_finite(origin.y) && is_finite(origin.z);
-    for (std::size_t i = 0; i < count; ++i) {
-        finite &= static_cast<std::uint32_t>(is_finite(x[i])) &
-                  static_cast<std::uint32_t>(is_finite(y[i])) &
-                  static_cast<std::uint32_t>(is_finite(z[i]));
+    if (!(std::isfinite(origin.x) && std::isfinite(origin.y) && std::isfinite(origin.z))) {
+        throw Error(ErrorCode::data, "the origin of rays is not finite");
     }
-    if (!finite) throw Error(ErrorCode::data, "a ray's origin or direction is not finite");
-
-    std::size_t found = 0;
-    if (ground_ && origin.y < *ground_) {
-        for (; found < count; ++found) hits[found] = static_cast<std::uint32_t>(found);
-        return found;
-    }
-    const float lowest = ground_ ? 0.0f : -std::numeric_limits<float>::max();
-    RTCIntersectContext context = detail::incoherent_context();
-    const detail::FlushDenormals flush;
     alignas(64) RTCRay rays[kRayPacket];
     for (std::size_t i = 0; i < std::min(kRayPacket, count); ++i) {
         rays[i] = {origin.x, origin.y, origin.z, 0, 0, 0, 0, 0, 0, 0xffffffff, 0, 0};
     }
+    RTCIntersectContext context = detail::incoherent_context();
+    std::size_t found = 0;
     for (std::size_t begin = 0; begin < count; begin += kRayPacket) {
         const std::size_t size = std::min(kRayPacket, count - begin);
-        for (std::size_t i = 0; i < size; ++i) {
-            RTCRay& ray = rays[i];
-            ray.dir_x = x[begin + i];
-            ray.dir_y = y[begin + i];
-            ray.dir_z = z[begin + i];
-            // Embree leaves rays alone whose end lies before their beginning, and marks with one
-            // those that hit.
-            ray.tfar = ray.dir_y >= lowest ? std::numeric_limits<float>::infinity() : -1.0f;
+        if (!detail::aim_rays(frame, size, x + begin, y + begin, z + begin, rays)) {
+            throw Error(ErrorCode::data, "the direction of a ray is not finite");
         }
-        rtcOccluded1M(embree_->scene, &context, rays, static_cast<unsigned>(size), sizeof(RTCRay));
+        if (ground_) stop_at_ground(*ground_, size, rays);
+        {
+            const detail::FlushDenormals flush;
+            rtcOccluded1M(embree_->scene, &context, rays, static_cast<unsigned>(size),
+                          sizeof(RTCRay));
+        }
+        // Embree marks a hit with an end before the beginning.
         for (std::size_t i = 0; i < size; ++i) {
             hits[found] = static_cast<std::uint32_t>(begin + i);
             found += rays[i].tfar < 0 ? 1 : 0;

@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "prt/bake.h"
+#include "prt/hemisphere.h"
 #include "tests/prt/shapes.h"
 
 namespace airlight {
@@ -32,8 +33,8 @@ struct Rays {
     }
     std::vector<std::uint32_t> blocked(const RayScene& scene, const glm::vec3& origin) const {
         std::vector<std::uint32_t> hits(x.size());
-        hits.resize(
-            scene.find_blocked(origin, x.size(), x.data(), y.data(), z.data(), hits.data()));
+        hits.resize(scene.find_blocked(origin, glm::mat3(1), x.size(), x.data(), y.data(), z.data(),
+                                       hits.data()));
         return hits;
     }
 };
@@ -164,6 +165,14 @@ TEST(RayScene, RaysThatAreNotFiniteAreRefused) {
             EXPECT_THROW(Rays(2).blocked(scene, origin), Error);
         }
     }
+    // The frame counts, too.
+    const Rays rays(3);
+    std::vector<std::uint32_t> hits(3);
+    glm::mat3 frame(1);
+    frame[1][2] = kNan;
+    EXPECT_THROW(scene.find_blocked(glm::vec3(0), frame, 3, rays.x.data(), rays.y.data(),
+                                    rays.z.data(), hits.data()),
+                 Error);
     // What is finite reaches Embree and comes back.
     Rays odd(6);
     odd.x = {0, 1e-45f, 3e38f, -3e38f, 1e-38f, 0};
@@ -184,12 +193,33 @@ TEST(RayScene, TheAnswerForARayDoesNotDependOnTheOthers) {
     std::vector<std::uint32_t> alone;
     for (std::uint32_t i = 0; i < rays.x.size(); ++i) {
         std::uint32_t hit = 0;
-        if (scene.find_blocked(origin, 1, &rays.x[i], &rays.y[i], &rays.z[i], &hit) == 1) {
+        if (scene.find_blocked(origin, glm::mat3(1), 1, &rays.x[i], &rays.y[i], &rays.z[i], &hit) ==
+            1) {
             alone.push_back(i);
         }
     }
     EXPECT_GT(together.size(), 100u);
     EXPECT_EQ(together, alone);
+}
+
+TEST(RayScene, TheFrameTurnsDirections) {
+    const Mesh other = make_sphere(9, 0.5, {0, 0, 3});
+    const Mesh mesh = make_sphere(4);
+    const RayScene scene(mesh, {&other});
+    const Rays rays(1023);
+    const glm::mat3 frame(vertex_frame(glm::normalize(glm::dvec3(1, -2, 0.5)), 7));
+    Rays turned = rays;
+    for (std::size_t i = 0; i < rays.x.size(); ++i) {
+        turned.x[i] = frame[0].x * rays.x[i] + frame[1].x * rays.y[i] + frame[2].x * rays.z[i];
+        turned.y[i] = frame[0].y * rays.x[i] + frame[1].y * rays.y[i] + frame[2].y * rays.z[i];
+        turned.z[i] = frame[0].z * rays.x[i] + frame[1].z * rays.y[i] + frame[2].z * rays.z[i];
+    }
+    const glm::vec3 origin = scene.origin({0.1, 0.3, 1.2}, {0, 0, 1});
+    std::vector<std::uint32_t> hits(rays.x.size());
+    hits.resize(scene.find_blocked(origin, frame, rays.x.size(), rays.x.data(), rays.y.data(),
+                                   rays.z.data(), hits.data()));
+    EXPECT_GT(hits.size(), 50u);
+    EXPECT_EQ(hits, turned.blocked(scene, origin));
 }
 
 TEST(RayScene, DenormalsAreFlushedWhileTracingOnly) {
