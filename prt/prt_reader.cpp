@@ -3,16 +3,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <type_traits>
 
-#include "core/atomic_file.h"
 #include "core/descriptor.h"
 #include "core/error.h"
+#include "core/open_input.h"
 #include "prt/mesh_text.h"
 #include "prt/prt_contents.h"
 #include "prt/prt_layout.h"
@@ -23,35 +21,24 @@ namespace {
 
 using detail::PrtInput;
 
-Descriptor open_regular(const std::string& path, std::size_t& size) {
-    Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    struct stat status = {};
-    if (file.get() < 0 || fstat(file.get(), &status) != 0) {
-        const int error = errno;
-        throw Error(
-            ErrorCode::io,
-            error == ENOENT ? "does not exist" : "cannot be opened: " + system_message(error),
-            path);
-    }
-    if (S_ISDIR(status.st_mode)) throw Error(ErrorCode::io, "is a directory", path);
-    if (!S_ISREG(status.st_mode)) throw Error(ErrorCode::io, "is not a regular file", path);
-    size = static_cast<std::size_t>(status.st_size);
+OpenInput open_regular(const std::string& path) {
+    OpenInput file = open_input(path, "a .prt file");
+    if (!file.has_size) throw Error(ErrorCode::io, "is not a regular file", file.name);
     return file;
 }
 
 }  // namespace
 
 struct PrtReader::State {
-    std::size_t size = 0;
-    Descriptor file;
+    OpenInput file;
     PrtInput input;
     detail::PrtContents contents;
     const PrtHeader& header = contents.header;
     detail::PrtLayout layout{header};
 
     State(const std::string& path, std::size_t max_memory)
-        : file(open_regular(path, size)),
-          input{file.get(), size, path, max_memory},
+        : file(open_regular(path)),
+          input{file.descriptor.get(), file.size, file.name, max_memory},
           contents(detail::read_contents(input)) {}
     State(const State&) = delete;
     State& operator=(const State&) = delete;
@@ -171,7 +158,7 @@ const std::vector<PrtFigures>& PrtReader::figures() const {
     return state_->contents.figures;
 }
 std::uint64_t PrtReader::file_bytes() const {
-    return state_->size;
+    return state_->input.size;
 }
 std::uint64_t PrtReader::fingerprint() const {
     return state_->contents.fingerprint;

@@ -18,8 +18,10 @@ namespace airlight {
 /// for. Any one changed bit and any cut is found, by the constructor or, in rows, when their block
 /// is read; verify() reads all of them.
 ///
-/// Memory: the report, the index (16 bytes for a chunk) and, while rows are read, one chunk. It is
-/// bounded by the size of the file and by max_memory, whatever the file says.
+/// Cost: 0.87 ns of CPU for each float32 and 0.74 ns for each float16 against 0.70 ns for fread,
+/// all rows at once from a file system in memory (bench/prt_file_bench.cpp). Memory: the report,
+/// the index (16 bytes for a chunk) and, while rows are read, one chunk. It is bounded by the size
+/// of the file and by max_memory, whatever the file says.
 ///
 /// The functions are const in that several threads may read at once. They throw Error naming the
 /// file:

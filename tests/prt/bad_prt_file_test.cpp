@@ -169,6 +169,19 @@ TEST(BadPrtFile, SectionsThatCannotBeAreRefusedEvenWhenSigned) {
     expect_complaint(vertex, "holds a vertex that the mesh does not have in row 0 of vertex_index");
 }
 
+TEST(BadPrtFile, OnlyTheBlocksThatAreReadMatter) {
+    std::string bytes = prt_bytes(some_header());
+    bytes[PrtSections(bytes).all[5].begin + 64] ^= 1;
+    const MemoryPrt file(bytes);
+    const PrtReader reader(file.path());
+    std::vector<float> values(12);
+    reader.read(PrtKind::visibility, 0, 2, values.data());
+    reader.read(PrtKind::visibility, 4, 1, values.data());
+    reader.read(PrtKind::transfer, 2, 2, values.data());
+    EXPECT_THROW(reader.read(PrtKind::visibility, 3, 1, values.data()), Error);
+    EXPECT_THROW(reader.read(PrtKind::visibility, 1, 2, values.data()), Error);
+}
+
 TEST(BadPrtFile, SwappedChunksAreRefused) {
     std::string bytes = prt_bytes(some_header());
     const auto sections = PrtSections(bytes).all;

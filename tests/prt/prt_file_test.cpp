@@ -187,6 +187,36 @@ TEST(PrtFile, FiguresAreThoseOfAllBlocks) {
     EXPECT_EQ(reader.figures()[3].maximum, 100);
 }
 
+// What lets a bake go on where it was interrupted: see "Unfinished files" of the page.
+TEST(PrtFile, ChunksHoldWhatTheIndexAddsUp) {
+    const std::string bytes = prt_bytes(some_header(101));
+    const MemoryPrt file(bytes);
+    const PrtReader reader(file.path());
+    std::vector<detail::FigureSum> sums(4);
+    std::vector<std::uint64_t> rows(4);
+    for (const PrtSections::Section& section : PrtSections(bytes).all) {
+        if (bytes.compare(section.begin, 4, detail::kRowsTag) != 0) continue;
+        const char* at = bytes.data() + section.begin;
+        const auto table = static_cast<std::size_t>(detail::load_unsigned(at + 4, 4, false));
+        EXPECT_EQ(detail::load_unsigned(at + 8, 8, false), rows[table]);
+        const std::uint64_t count = detail::load_unsigned(at + 16, 8, false);
+        rows[table] += count;
+        const auto figure = [&](std::size_t i) {
+            return detail::load_double(at + 32 + 8 * i, false);
+        };
+        sums[table].add({figure(0), figure(1), figure(2), figure(3)},
+                        static_cast<std::size_t>(count) *
+                            reader.components(reader.header().tables[table].kind));
+    }
+    for (std::size_t t = 0; t < 4; ++t) {
+        EXPECT_EQ(rows[t], 101u);
+        EXPECT_EQ(sums[t].figures().minimum, reader.figures()[t].minimum);
+        EXPECT_EQ(sums[t].figures().maximum, reader.figures()[t].maximum);
+        EXPECT_EQ(sums[t].figures().largest_error, reader.figures()[t].largest_error);
+        EXPECT_EQ(sums[t].figures().rms_error, reader.figures()[t].rms_error);
+    }
+}
+
 TEST(PrtFile, BlocksAreChosenForChunksOfAQuarterMebibyte) {
     PrtHeader header = some_header();
     header.block_rows = 0;
