@@ -13,6 +13,7 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "prt/bake_checks.h"
 #include "prt/hemisphere.h"
 #include "prt/morton.h"
 #include "sh/basis_batch.h"
@@ -22,16 +23,9 @@
 #include "sh/zonal.h"
 
 namespace airlight {
-namespace {
+namespace detail {
 
-// Directions that are turned, traced and summed at a time: their arrays stay in the cache.
-constexpr std::size_t kDirections = 2048;
-// Vertices of a task: tens of milliseconds.
-constexpr std::size_t kVertices = 128;
-// Blocked directions that wait to be summed.
-constexpr std::size_t kPending = 24 << 10;
-
-void check_options(const BakeOptions& options) {
+void check_bake_options(const BakeOptions& options) {
     if (options.order < 1 || options.order > kLargestBakeOrder) {
         throw Error(ErrorCode::usage, fmt::format("the order must be 1 to {}, got {}",
                                                   kLargestBakeOrder, options.order));
@@ -42,7 +36,7 @@ void check_options(const BakeOptions& options) {
     }
 }
 
-void check_vertices(const Mesh& mesh, const std::uint32_t* vertices, std::size_t count) {
+void check_bake_vertices(const Mesh& mesh, const std::uint32_t* vertices, std::size_t count) {
     if (mesh.normals.size() != mesh.positions.size()) {
         throw Error(ErrorCode::data, fmt::format("the mesh has {} vertices and {} normals",
                                                  mesh.positions.size(), mesh.normals.size()));
@@ -59,6 +53,16 @@ void check_vertices(const Mesh& mesh, const std::uint32_t* vertices, std::size_t
         }
     }
 }
+
+}  // namespace detail
+namespace {
+
+// Directions that are turned, traced and summed at a time: their arrays stay in the cache.
+constexpr std::size_t kDirections = 2048;
+// Vertices of a task: tens of milliseconds.
+constexpr std::size_t kVertices = 128;
+// Blocked directions that wait to be summed.
+constexpr std::size_t kPending = 24 << 10;
 
 // What all vertices share.
 struct Plan {
@@ -264,8 +268,8 @@ BakeRows BakeRows::from(std::size_t row, int order) const {
 BakeReport bake_vertices(const Mesh& mesh, const RayScene& scene, const BakeOptions& options,
                          const std::uint32_t* vertices, std::size_t count, const BakeRows& rows,
                          Progress* progress) {
-    check_options(options);
-    check_vertices(mesh, vertices, count);
+    detail::check_bake_options(options);
+    detail::check_bake_vertices(mesh, vertices, count);
     const Plan plan(options);
     const auto bake_some = [&](std::size_t begin, std::size_t end) {
         const BakeReport report = bake_block(plan, mesh, scene, vertices + begin, end - begin,
@@ -286,7 +290,7 @@ BakeRows Bake::rows() {
 
 Bake bake_mesh(const Mesh& mesh, const RayScene& scene, const BakeOptions& options,
                const BakeKinds& kinds, std::size_t max_memory, Progress* progress) {
-    check_options(options);
+    detail::check_bake_options(options);
     const std::size_t vertices = mesh.positions.size(), size = sh_count(options.order);
     const std::size_t floats = (kinds.visibility ? size : 0) + (kinds.transfer ? size : 0) +
                                (kinds.unshadowed_transfer ? size : 0) +

@@ -19,8 +19,16 @@
 //     t = a (n) / pi - (2 / N) sum_blocked (n omega) Y,  a the clamped cosine of sh/lobes.h.
 // Where nothing is blocked the result is exact to float.
 //
-// Error: relative RMS over the vertices of bunny and nefertiti, see bench/bake_bench.cpp.
-// Cost: that of the rays; all else is under 5 % (bench/bake_bench.cpp).
+// Error, relative RMS over 512 vertices at order 6 against 65536 rays, and CPU time of a vertex
+// (bench/bake_bench.cpp --vertices 512 --truth 65536; of bunny 15 % of the rays are blocked, of
+// nefertiti 10 %):
+//     rays                      512    1024    2048    4096    8192
+//     visibility, bunny       0.0151  0.0086  0.0051  0.0030  0.0018
+//                 nefertiti   0.0135  0.0077  0.0046  0.0026  0.0015
+//     transfer,   bunny       0.0083  0.0049  0.0030  0.0018  0.0011
+//                 nefertiti   0.0057  0.0033  0.0022  0.0012  0.0007
+//     us                        50      95     185     360     700
+// The rays are 95 to 97 % of the time of 1024: 0.08 to 0.13 us each, twice as fast as one by one.
 #pragma once
 
 #include <cstddef>

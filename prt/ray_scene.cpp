@@ -133,7 +133,7 @@ using GeometryOwner = std::unique_ptr<RTCGeometryTy, GeometryRelease>;
 
 // Returns how many triangles were too far away to be of use.
 std::uint64_t add_mesh(const EmbreeScene& scene, const Mesh& mesh, const glm::dvec3& centre,
-                       double scale) {
+                       double scale, unsigned number) {
     if (mesh.triangles.empty()) return 0;
     const GeometryOwner geometry(rtcNewGeometry(scene.device, RTC_GEOMETRY_TYPE_TRIANGLE));
     check(scene);
@@ -162,7 +162,7 @@ std::uint64_t add_mesh(const EmbreeScene& scene, const Mesh& mesh, const glm::dv
         }
     }
     rtcCommitGeometry(geometry.get());
-    rtcAttachGeometry(scene.scene, geometry.get());
+    rtcAttachGeometryByID(scene.scene, geometry.get(), number);
     check(scene);
     return far;
 }
@@ -215,11 +215,12 @@ RayScene::RayScene(const Mesh& mesh, const std::vector<const Mesh*>& occluders,
     scene.scene = rtcNewScene(scene.device);
     check(scene);
     rtcSetSceneFlags(scene.scene, RTC_SCENE_FLAG_ROBUST);
-    report_.far_triangles += add_mesh(scene, mesh, centre_, scale_);
+    report_.far_triangles += add_mesh(scene, mesh, centre_, scale_, 0);
     report_.triangles += mesh.triangles.size();
-    for (const Mesh* occluder : occluders) {
-        report_.far_triangles += add_mesh(scene, *occluder, centre_, scale_);
-        report_.triangles += occluder->triangles.size();
+    for (std::size_t i = 0; i < occluders.size(); ++i) {
+        report_.far_triangles +=
+            add_mesh(scene, *occluders[i], centre_, scale_, static_cast<unsigned>(i + 1));
+        report_.triangles += occluders[i]->triangles.size();
     }
     rtcCommitScene(scene.scene);
     check(scene);
@@ -245,9 +246,11 @@ glm::vec3 RayScene::origin(const glm::dvec3& position, const glm::dvec3& normal)
     return {clamped(q.x), clamped(q.y), clamped(q.z)};
 }
 
-std::size_t RayScene::find_blocked(const glm::vec3& origin, const glm::mat3& frame,
-                                   std::size_t count, const float* x, const float* y,
-                                   const float* z, std::uint32_t* hits) const {
+// Calls trace(begin, size, rays) for packets of the rays, aimed and checked.
+template <class Trace>
+void RayScene::for_packets(const glm::vec3& origin, const glm::mat3& frame, std::size_t count,
+                           const float* x, const float* y, const float* z,
+                           const Trace& trace) const {
     assert(count <= std::numeric_limits<std::uint32_t>::max());
     if (!(std::isfinite(origin.x) && std::isfinite(origin.y) && std::isfinite(origin.z))) {
         throw Error(ErrorCode::data, "the origin of rays is not finite");
@@ -256,14 +259,22 @@ std::size_t RayScene::find_blocked(const glm::vec3& origin, const glm::mat3& fra
     for (std::size_t i = 0; i < std::min(kRayPacket, count); ++i) {
         rays[i] = {origin.x, origin.y, origin.z, 0, 0, 0, 0, 0, 0, 0xffffffff, 0, 0};
     }
-    RTCIntersectContext context = detail::incoherent_context();
-    std::size_t found = 0;
     for (std::size_t begin = 0; begin < count; begin += kRayPacket) {
         const std::size_t size = std::min(kRayPacket, count - begin);
         if (!detail::aim_rays(frame, size, x + begin, y + begin, z + begin, rays)) {
             throw Error(ErrorCode::data, "the direction of a ray is not finite");
         }
         if (ground_) stop_at_ground(*ground_, size, rays);
+        trace(begin, size, rays);
+    }
+}
+
+std::size_t RayScene::find_blocked(const glm::vec3& origin, const glm::mat3& frame,
+                                   std::size_t count, const float* x, const float* y,
+                                   const float* z, std::uint32_t* hits) const {
+    RTCIntersectContext context = detail::incoherent_context();
+    std::size_t found = 0;
+    const auto trace = [&](std::size_t begin, std::size_t size, RTCRay* rays) {
         {
             const detail::FlushDenormals flush;
             rtcOccluded1M(embree_->scene, &context, rays, static_cast<unsigned>(size),
@@ -274,7 +285,42 @@ std::size_t RayScene::find_blocked(const glm::vec3& origin, const glm::mat3& fra
             hits[found] = static_cast<std::uint32_t>(begin + i);
             found += rays[i].tfar < 0 ? 1 : 0;
         }
-    }
+    };
+    for_packets(origin, frame, count, x, y, z, trace);
+    return found;
+}
+
+std::size_t RayScene::find_hits(const glm::vec3& origin, const glm::mat3& frame, std::size_t count,
+                                const float* x, const float* y, const float* z,
+                                RayHit* hits) const {
+    RTCIntersectContext context = detail::incoherent_context();
+    alignas(64) RTCRayHit full[kRayPacket];
+    std::size_t found = 0;
+    const auto trace = [&](std::size_t begin, std::size_t size, const RTCRay* rays) {
+        for (std::size_t i = 0; i < size; ++i) {
+            full[i].ray = rays[i];
+            full[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            full[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        }
+        {
+            const detail::FlushDenormals flush;
+            rtcIntersect1M(embree_->scene, &context, full, static_cast<unsigned>(size),
+                           sizeof(RTCRayHit));
+        }
+        for (std::size_t i = 0; i < size; ++i) {
+            const RTCHit& hit = full[i].hit;
+            if (hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+            const RTCRay& ray = full[i].ray;
+            const float along = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z;
+            hits[found++] = {static_cast<std::uint32_t>(begin + i),
+                             hit.geomID,
+                             hit.primID,
+                             hit.u,
+                             hit.v,
+                             along < 0};
+        }
+    };
+    for_packets(origin, frame, count, x, y, z, trace);
     return found;
 }
 
