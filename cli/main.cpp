@@ -101,10 +101,10 @@ int run(int argc, char** argv) {
         "  airlight eval psf < points.csv\n"
         "airlight COMMAND --help tells more. Exit status: 0 done, 1 the data or the machine\n"
         "failed, 2 wrong usage.");
-    const std::vector<Command> commands = {declare_fog(program),    declare_info(program),
-                                           declare_eval(program),   declare_sheet(program),
-                                           declare_ladder(program), declare_sh(program),
-                                           declare_export(program), declare_brdf(program)};
+    const std::vector<Command> commands = {
+        declare_fog(program),    declare_info(program),   declare_eval(program),
+        declare_sheet(program),  declare_ladder(program), declare_sh(program),
+        declare_export(program), declare_brdf(program),   declare_bake(program)};
     const Command* command = nullptr;
     try {
         command = parse(program, commands, argc, argv);

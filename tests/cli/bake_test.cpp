@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// airlight bake from the command line.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "prt/bake.h"
+#include "prt/mesh_io.h"
+#include "prt/prt_key.h"
+#include "prt/prt_reader.h"
+#include "tests/cli/program.h"
+#include "tests/core/scratch_directory.h"
+#include "tests/prt/mesh_files.h"
+
+namespace airlight {
+namespace {
+
+class BakeCommand : public testing::Test {
+  protected:
+    BakeCommand() { write_bytes(mesh_, to_obj(make_globe(6))); }
+
+    std::vector<std::string> call(const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> words = {"bake", mesh_, "-o", path_, "--rays", "256"};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    }
+
+    const ScratchDirectory directory_;
+    const std::string mesh_ = directory_ / "globe.obj", path_ = directory_ / "globe.prt";
+};
+
+TEST_F(BakeCommand, WritesWhatTheLibraryComputes) {
+    const Outcome outcome =
+        run(call({"--order", "4", "--ground=-1.5", "--kind", "transfer,bent_normal", "--json"}));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const nlohmann::json report = nlohmann::json::parse(outcome.out);
+    const Mesh mesh = read_mesh(mesh_);
+    RaySceneOptions scene;
+    scene.ground_height = -1.5;
+    BakeKinds kinds;
+    kinds.visibility = false;
+    kinds.bent_normal = true;
+    const Bake expected = bake_mesh(mesh, RayScene(mesh, {}, scene), {4, 256}, kinds);
+    PrtReader reader(path_);
+    EXPECT_EQ(reader.header().order, 4);
+    EXPECT_EQ(reader.header().rows, mesh.positions.size());
+    EXPECT_EQ(reader.header().mesh, mesh_key(mesh));
+    EXPECT_EQ(report["key"], to_text(reader.header().key));
+    EXPECT_EQ(report["blocked"], expected.report.blocked);
+    EXPECT_GT(expected.report.blocked, 0u);
+    EXPECT_EQ(reader.read_all(PrtKind::transfer), expected.transfer);
+    EXPECT_EQ(reader.read_all(PrtKind::bent_normal), expected.bent_normal);
+    EXPECT_FALSE(reader.find(PrtKind::visibility));
+}
+
+TEST_F(BakeCommand, BytesFollowFromTheRequestAlone) {
+    ASSERT_EQ(run(call({"--threads", "1"})).status, 0);
+    const std::string first = read_bytes(path_);
+    for (const char* threads : {"2", "7"}) {
+        ASSERT_EQ(run(call({"--threads", threads, "--force"})).status, 0);
+        EXPECT_EQ(read_bytes(path_), first) << threads;
+    }
+    ASSERT_EQ(run(call({"--order", "5", "--force"})).status, 0);
+    const PrtKey other = PrtReader(path_).header().key;
+    write_bytes(path_, first);
+    EXPECT_NE(PrtReader(path_).header().key, other);
+}
+
+// Two parallel triangles: each takes light from the other, whichever of the two is baked.
+TEST_F(BakeCommand, OccludersHideLight) {
+    const std::string floor = directory_ / "floor.obj", roof = directory_ / "roof.obj";
+    write_bytes(floor, "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n");
+    write_bytes(roof, "v -50 1 -50\nv 100 1 -50\nv -50 1 100\nf 1 2 3\n");
+    const auto occlusion = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words = {
+            "bake", floor, "-o", path_, "--kind", "ambient_occlusion", "--force"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome outcome = run(words);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        return PrtReader(path_).read_all(PrtKind::ambient_occlusion);
+    };
+    for (const float value : occlusion({})) EXPECT_FLOAT_EQ(value, 1);
+    for (const float value : occlusion({"--occluder", roof})) EXPECT_LT(value, 0.01f);
+    for (const float value : occlusion({"--occluder", floor, "--occluder", roof})) {
+        EXPECT_LT(value, 0.01f);
+    }
+}
+
+TEST_F(BakeCommand, MistakesAreSaidInOneSentence) {
+    const auto refused = [&](const std::vector<std::string>& words, int status,
+                             const std::string& sentence) {
+        const Outcome outcome = run(words);
+        EXPECT_EQ(outcome.status, status) << sentence;
+        EXPECT_NE(outcome.err.find(sentence), std::string::npos) << outcome.err;
+        EXPECT_EQ(outcome.out, "");
+    };
+    refused({"bake"}, 2, "a mesh is missing");
+    refused({"bake", mesh_, mesh_, "-o", path_}, 2, "takes one mesh");
+    refused({"bake", mesh_}, 2, "give -o FILE.prt");
+    refused({"bake", mesh_, "-o", "-"}, 2, "cannot go to standard output");
+    refused(call({"--order", "11"}), 2, "--order: '11' is not an integer in [1, 10]");
+    refused(call({"--rays", "0"}), 2, "--rays");
+    refused(call({"--kind", "glow"}), 2, "--kind: 'glow' is no kind");
+    refused(call({"--kind", "transfer,transfer"}), 2, "named twice");
+    refused(call({"--ground", "nan"}), 2, "--ground");
+    refused(call({"--occluder", directory_ / "none.obj"}), 1, "none.obj: does not exist");
+    write_bytes(directory_ / "nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
+    refused({"bake", directory_ / "nan.obj", "-o", path_}, 1, "non-finite");
+    write_bytes(path_, "mine");
+    refused(call(), 1, "already exists");
+    EXPECT_EQ(read_bytes(path_), "mine");
+    const Outcome repaired =
+        run({"bake", directory_ / "nan.obj", "-o", path_, "--nonfinite", "zero", "--force"});
+    EXPECT_EQ(repaired.status, 0) << repaired.err;
+    EXPECT_NE(repaired.err.find("1 non-finite coordinates became 0"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace airlight
