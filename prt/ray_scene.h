@@ -13,10 +13,10 @@
 //     min(8 ulps of |p|, 4e-3 d)     what the coordinates of the mesh were rounded to before:
 //                                    float ulps if all of them are floats, else double ones.
 // With this no vertex of a convex mesh is shadowed, up to 10^4 radii from the origin, also when its
-// positions were rounded to float there, which makes dents in it; the tests need half of the 8 ulps.
-// Without any lift, 99.6 to 100 % of the rays of a sphere or a cube are stopped by the triangles
-// that they start from. What is nearer to a vertex than the lift is missed. Rays begin at the lifted
-// origin itself, and Embree's traversal is the watertight one (RTC_SCENE_FLAG_ROBUST).
+// positions were rounded to float there, which makes dents in it; the tests need half of the 8
+// ulps. Without any lift, 99.6 to 100 % of the rays of a sphere or a cube are stopped by the
+// triangles that they start from. What is nearer to a vertex than the lift is missed. Rays begin at
+// the lifted origin itself, and Embree's traversal is the watertight one (RTC_SCENE_FLAG_ROBUST).
 #pragma once
 
 #include <cstddef>
