@@ -16,6 +16,7 @@
 #include "core/memory.h"
 #include "core/progress.h"
 #include "prt/bake.h"
+#include "prt/bounce.h"
 #include "prt/mesh_io.h"
 #include "prt/prt_key.h"
 #include "prt/prt_writer.h"
@@ -33,7 +34,12 @@ struct BakeRequest {
     RaySceneOptions scene;
     MeshReadOptions read;
     PrtType type = PrtType::float32;
+    int bounces = 0;
+    double albedo = 0.5;
+    bool albedo_given = false;
 };
+
+constexpr int kLargestBounces = 64;
 
 constexpr PrtKind kBakedKinds[] = {PrtKind::visibility, PrtKind::transfer,
                                    PrtKind::unshadowed_transfer, PrtKind::bent_normal,
@@ -97,6 +103,8 @@ PrtKey key_of(const BakeRequest& request, const Mesh& mesh, const std::vector<Me
     hash.add_integer(static_cast<std::uint64_t>(request.bake.rays));
     hash.add_integer(request.scene.ground_height ? 1 : 0);
     hash.add(request.scene.ground_height.value_or(0));
+    hash.add_integer(static_cast<std::uint64_t>(request.bounces));
+    hash.add(request.bounces > 0 ? request.albedo : 0.0);
     for (const PrtKind kind : request.kinds) hash.add(prt_name(kind));
     hash.add(prt_name(request.type));
     return hash.key();
@@ -134,6 +142,12 @@ void check(const BakeRequest& request, const CommonOptions& common) {
     if (request.output == "-") {
         throw Error(ErrorCode::usage, "a .prt file cannot go to standard output", "-o");
     }
+    if (request.albedo_given && request.bounces == 0) {
+        throw Error(ErrorCode::usage, "goes with --bounces only", "--albedo");
+    }
+    if (request.bounces > 0 && !has(request, PrtKind::transfer)) {
+        throw Error(ErrorCode::usage, "goes with the kind transfer only", "--bounces");
+    }
     check_target(request.output, common.force);
 }
 
@@ -168,8 +182,13 @@ void run_bake(BakeRequest request, const CommonOptions& common) {
     drawing.quiet = common.verbosity < 0;
     Bake bake;
     {
-        Progress progress("bake", mesh.positions.size(), drawing);
+        const auto passes = static_cast<std::uint64_t>(1 + request.bounces);
+        Progress progress("bake", passes * mesh.positions.size(), drawing);
         bake = bake_mesh(mesh, scene, request.bake, kinds, common.max_memory, &progress);
+        if (request.bounces > 0) {
+            add_bounces(mesh, scene, request.bake, request.albedo, request.bounces, bake,
+                        &progress);
+        }
     }
     const double bake_seconds = seconds_since(start);
     const std::vector<std::string> notes = notes_of(read, bake.report, !occluders.empty());
@@ -202,6 +221,7 @@ void run_bake(BakeRequest request, const CommonOptions& common) {
                                  {"triangles", scene.report().triangles},
                                  {"order", request.bake.order},
                                  {"rays", bake.report.rays},
+                                 {"bounces", request.bounces},
                                  {"blocked", bake.report.blocked},
                                  {"mostly_blocked_vertices", bake.report.mostly_blocked},
                                  {"scene_bytes", scene.report().bytes},
@@ -226,6 +246,16 @@ void add_flags(const Command& command, BakeRequest& request) {
     add_flag(command, "--rays", "N", "Directions of the hemisphere of each vertex (default: 1024)",
              [&](const std::string& text) {
                  request.bake.rays = parse_integer(text, "--rays", 1, kLargestBakeRays);
+             });
+    add_flag(command, "--bounces", "N",
+             "Times that light goes on between parts of the mesh, in transfer (default: 0)",
+             [&](const std::string& text) {
+                 request.bounces = parse_integer(text, "--bounces", 0, kLargestBounces);
+             });
+    add_flag(command, "--albedo", "A", "Albedo of the mesh for --bounces, in [0, 1] (default: 0.5)",
+             [&](const std::string& text) {
+                 request.albedo = parse_number(text, "--albedo", {0, 1});
+                 request.albedo_given = true;
              });
     add_flag(command, "--kind", "KIND[,KIND...]", kind_names() + " (default: visibility,transfer)",
              [&](const std::string& text) { request.kinds = parse_kinds(text); });
@@ -262,6 +292,7 @@ Command declare_bake(CLI::App& program) {
         "Precompute how the vertices of a mesh see and reflect distant light",
         "  airlight bake bunny.obj -o bunny.prt\n"
         "  airlight bake statue.ply -o statue.prt --order 4 --rays 4096 --ground 0\n"
+        "  airlight bake cup.obj -o cup.prt --bounces 3 --albedo 0.7\n"
         "  airlight bake chair.obj -o chair.prt --occluder room.obj --kind transfer --json\n"
         "Meshes are OBJ, PLY, STL or OFF. airlight info describes the result, airlight export\n"
         "turns it into .npy or .ply.");

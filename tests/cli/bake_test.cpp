@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "prt/bake.h"
+#include "prt/bounce.h"
 #include "prt/mesh_io.h"
 #include "prt/prt_key.h"
 #include "prt/prt_reader.h"
@@ -65,6 +66,22 @@ TEST_F(BakeCommand, BytesFollowFromTheRequestAlone) {
     EXPECT_NE(PrtReader(path_).header().key, other);
 }
 
+TEST_F(BakeCommand, BouncesAddLightBetweenParts) {
+    const std::string bowl = directory_ / "bowl.obj";
+    write_bytes(bowl, "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 4 2\nf 1 3 4\n");
+    const std::vector<std::string> words = {"bake",   bowl,  "-o",        path_, "--order",  "3",
+                                            "--rays", "512", "--bounces", "2",   "--albedo", "0.7"};
+    const Outcome outcome = run(words);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Mesh mesh = read_mesh(bowl);
+    const RayScene scene(mesh);
+    Bake expected = bake_mesh(mesh, scene, {3, 512});
+    const std::vector<float> direct = expected.transfer;
+    add_bounces(mesh, scene, {3, 512}, 0.7, 2, expected);
+    EXPECT_EQ(PrtReader(path_).read_all(PrtKind::transfer), expected.transfer);
+    EXPECT_NE(direct, expected.transfer);
+}
+
 // Two parallel triangles: each takes light from the other, whichever of the two is baked.
 TEST_F(BakeCommand, OccludersHideLight) {
     const std::string floor = directory_ / "floor.obj", roof = directory_ / "roof.obj";
@@ -99,6 +116,9 @@ TEST_F(BakeCommand, MistakesAreSaidInOneSentence) {
     refused({"bake", mesh_, "-o", "-"}, 2, "cannot go to standard output");
     refused(call({"--order", "11"}), 2, "--order: '11' is not an integer in [1, 10]");
     refused(call({"--rays", "0"}), 2, "--rays");
+    refused(call({"--albedo", "0.5"}), 2, "--albedo: goes with --bounces only");
+    refused(call({"--bounces", "1", "--kind", "visibility"}), 2, "--bounces: goes with the kind");
+    refused(call({"--bounces", "1", "--albedo", "1.5"}), 2, "--albedo");
     refused(call({"--kind", "glow"}), 2, "--kind: 'glow' is no kind");
     refused(call({"--kind", "transfer,transfer"}), 2, "named twice");
     refused(call({"--ground", "nan"}), 2, "--ground");
