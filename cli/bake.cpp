@@ -11,6 +11,7 @@
 
 #include "cli/command.h"
 #include "cli/numbers.h"
+#include "cli/stopwatch.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/memory.h"
@@ -69,10 +70,6 @@ std::vector<PrtKind> parse_kinds(const std::string& text) {
         begin = end + 1;
     }
     return kinds;
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// What was found on the way and is worth a warning.

@@ -12,6 +12,7 @@
 #include "cli/command.h"
 #include "cli/numbers.h"
 #include "cli/phase_flag.h"
+#include "cli/stopwatch.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/memory.h"
@@ -29,10 +30,6 @@ struct BrdfRequest {
     BrdfFogOptions fog;
     BrdfReadOptions read;
 };
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // "metal:A" and "lambert:R" are tables of ours.
 std::optional<BrdfTable> built_in(const std::string& name) {

@@ -19,6 +19,7 @@
 #include "cli/map_flags.h"
 #include "cli/numbers.h"
 #include "cli/phase_flag.h"
+#include "cli/stopwatch.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/progress.h"
@@ -86,10 +87,6 @@ void check_layers_file(const std::string& path) {
     if (path != "-" && extension != ".exr") {
         throw Error(ErrorCode::usage, "--component layers needs an .exr file or -", path);
     }
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 std::vector<std::string> reading_notes(const ReadReport& report, const ReadOptions& options,
