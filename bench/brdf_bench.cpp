@@ -21,9 +21,9 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/ladder_metal.h"
 #include "core/constants.h"
 #include "core/threads.h"
-#include "medium/psf.h"
 #include "sh/brdf_bands.h"
 #include "sh/brdf_fog.h"
 #include "sh/brdf_models.h"
@@ -132,27 +132,6 @@ void add_reflectance(int samples, int hundredths) {
         ->Unit(benchmark::kMillisecond);
 }
 
-// E of the function tabulated, by midpoints about the source, where PSF sin(gamma) is bounded.
-double quadrature(const RoughMetal& metal, double thickness, const BrdfDirections& at) {
-    const glm::dvec3 side = glm::normalize(
-        glm::cross(at.in, std::abs(at.in.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
-    const glm::dvec3 other = glm::cross(at.in, side);
-    constexpr int kRows = 800, kColumns = 640;
-    double sum = 0;
-    for (int i = 0; i < kRows; ++i) {
-        const double gamma = kPi * (i + 0.5) / kRows;
-        const double weight =
-            psf(thickness, gamma) * std::sin(gamma) * kPi / kRows * 2 * kPi / kColumns;
-        for (int k = 0; k < kColumns; ++k) {
-            const double phi = 2 * kPi * (k + 0.5) / kColumns;
-            const glm::dvec3 in = std::cos(gamma) * at.in +
-                                  std::sin(gamma) * (std::cos(phi) * side + std::sin(phi) * other);
-            if (in.z > 0) sum += weight * in.z * evaluate_metal(metal, in, at.out).x;
-        }
-    }
-    return sum;
-}
-
 struct Check {
     std::size_t index;
     double cosine, exact;
@@ -172,7 +151,8 @@ const std::vector<Check>& checks_of(int hundredths) {
                 const BrdfDirections at = brdf_directions(brdf_cell_centre(size, h, d, p));
                 if (at.in.z < kLowest || at.out.z < kLowest) continue;
                 const auto index = static_cast<std::size_t>((h * 90 + d) * 360 + p);
-                checks.push_back({index, at.in.z, quadrature(metal_of(hundredths), 1, at)});
+                checks.push_back(
+                    {index, at.in.z, metal_airlight(metal_of(hundredths), 1, at, 800, 640)});
             }
         }
     }

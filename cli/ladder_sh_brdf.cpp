@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "cli/ladder_draws.h"
+#include "cli/ladder_metal.h"
 #include "cli/ladder_sh.h"
-#include "medium/psf.h"
 #include "sh/brdf.h"
 #include "sh/brdf_fog.h"
 #include "sh/brdf_models.h"
@@ -69,27 +69,6 @@ RungResult measure_lookup(Metal& metal, BrdfLookup lookup) {
     return {nanoseconds, errors.largest(), errors.rms()};
 }
 
-// E of sh/brdf_fog.h at T = 1 of the function tabulated, by midpoints about the source, where PSF
-// sin(gamma) is bounded.
-double scattered(const RoughMetal& metal, const BrdfDirections& at) {
-    const glm::dvec3 side = glm::normalize(
-        glm::cross(at.in, std::abs(at.in.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
-    const glm::dvec3 other = glm::cross(at.in, side);
-    constexpr int kRows = 400, kColumns = 320;
-    double sum = 0;
-    for (int i = 0; i < kRows; ++i) {
-        const double gamma = kPi * (i + 0.5) / kRows;
-        const double weight = psf(1, gamma) * std::sin(gamma) * kPi / kRows * 2 * kPi / kColumns;
-        for (int k = 0; k < kColumns; ++k) {
-            const double phi = 2 * kPi * (k + 0.5) / kColumns;
-            const glm::dvec3 in = std::cos(gamma) * at.in +
-                                  std::sin(gamma) * (std::cos(phi) * side + std::sin(phi) * other);
-            if (in.z > 0) sum += weight * in.z * evaluate_metal(metal, in, at.out).x;
-        }
-    }
-    return sum;
-}
-
 struct Cell {
     std::size_t index;
     double cosine, exact;
@@ -108,7 +87,7 @@ struct FoggyMetal : Metal {
                     const BrdfDirections at = brdf_directions(brdf_cell_centre(size, h, d, p));
                     if (at.in.z < kLowest || at.out.z < kLowest) continue;
                     cells.push_back({static_cast<std::size_t>((h * 90 + d) * 360 + p), at.in.z,
-                                     scattered(metal, at)});
+                                     metal_airlight(metal, 1, at, 400, 320)});
                 }
             }
         }
