@@ -113,7 +113,8 @@ class BadShFile : public testing::Test {
             ADD_FAILURE() << "taken, but: " << sentence;
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ErrorCode::data) << sentence;
-            EXPECT_EQ(error.where(), "a.json");
+            // Lines are tests/core/json_fields_test.cpp's.
+            EXPECT_EQ(error.where().substr(0, error.where().find(':')), "a.json");
             EXPECT_EQ(error.what(), sentence);
             EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
             EXPECT_LT(std::strlen(error.what()), 300u);
@@ -135,14 +136,14 @@ class BadShFile : public testing::Test {
 TEST_F(BadShFile, IsNotJson) {
     refuse_text("", "is empty");
     refuse_text(" \n", "is no whole JSON: it ends too early");
-    refuse_text("hello, world\n", "is no JSON: line 1 cannot be read");
-    refuse_text("{\n\"airlight_sh\": 1,\n!}", "is no JSON: line 3 cannot be read");
-    refuse_text(std::string("\x76\x2f\x31\x01\0\0", 6), "is no JSON: line 1 cannot be read");
-    refuse_text("{\"a\": \"\xff\"}", "is no JSON: line 1 cannot be read");
+    refuse_text("hello, world\n", "is no JSON: this line cannot be read");
+    refuse_text("{\n\"airlight_sh\": 1,\n!}", "is no JSON: this line cannot be read");
+    refuse_text(std::string("\x76\x2f\x31\x01\0\0", 6), "is no JSON: this line cannot be read");
+    refuse_text("{\"a\": \"\xff\"}", "is no JSON: this line cannot be read");
     refuse_text("[1, 2]", "is no coefficient file: the field airlight_sh is missing");
     refuse_text("17", "is no coefficient file: the field airlight_sh is missing");
     refuse_text("{}", "is no coefficient file: the field airlight_sh is missing");
-    refuse("0.5", "NaN", "is no JSON: line 10 cannot be read");
+    refuse("0.5", "NaN", "is no JSON: this line cannot be read");
 }
 
 TEST_F(BadShFile, IsCutOff) {
@@ -174,7 +175,7 @@ TEST_F(BadShFile, HasAFieldThatIsMissingUnknownOrThereTwice) {
         refuse_text(text, "the field " + field + " is missing");
     }
     refuse("\"order\": 2", "\"order\": 2, \"order\": 2", "the field order is given twice");
-    refuse("\"albedo\"", "\"albino\"", "the field fog.albino is unknown");
+    refuse("\"albedo\"", "\"albino\"", "the field fog.albino is unknown; is albedo meant?");
     refuse("\"albedo\": [0.5], ", "", "the field fog.albedo is missing");
     refuse("\"height\": 2", "\"width\": 2", "the field width is given twice");
     refuse("\"unit\"", "\"a\\nb\"", "the field a\\nb is unknown");
