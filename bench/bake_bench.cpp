@@ -5,6 +5,9 @@
 //     rays alone       a loop that only calls rtcOccluded1M with 256 rays, made before the clock
 //     bake_vertices    visibility and shadowed transfer, rays made and checked, results written
 //     straightforward  rtcOccluded1 ray by ray and the basis evaluated for each that is free
+//     one bounce       bake_vertices of transfer with the mesh itself as a reflector
+//     nearest hits     find_hits for all rays and no more, what a bounce cost that did not begin
+//                      with the blocked ones
 // Ratios are of rays per CPU second, medians over the rounds. Without a file the mesh is a bumpy
 // sphere.
 #include <fmt/format.h>
@@ -33,7 +36,7 @@ namespace airlight {
 namespace {
 
 constexpr std::size_t kBlock = 512;
-constexpr int kContenders = 3;
+constexpr int kContenders = 5;
 
 Mesh bumpy_sphere(unsigned steps) {
     Mesh mesh;
@@ -66,7 +69,8 @@ struct Contest {
     BakeOptions options;
     HemisphereDirections local;
     std::vector<RTCRay> rays;
-    std::vector<float> visibility, transfer;
+    std::vector<float> visibility, transfer, reflected;
+    std::vector<RayHit> nearest;
     std::size_t hits = 0;
 
     Contest(const Mesh& m, const RayScene& s, const BakeOptions& o)
@@ -76,7 +80,9 @@ struct Contest {
           local(fibonacci_hemisphere(static_cast<std::size_t>(o.rays))),
           rays(local.count()),
           visibility(kBlock * sh_count(o.order)),
-          transfer(visibility.size()) {}
+          transfer(visibility.size()),
+          reflected(sh_count(o.order) * m.positions.size(), 0.1f),
+          nearest(local.count()) {}
 
     void make_rays(std::uint32_t v) {
         const glm::vec3 origin = scene.origin(mesh.positions[v], mesh.normals[v]);
@@ -113,6 +119,42 @@ struct Contest {
         const double begin = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
         hits += bake_vertices(mesh, scene, options, vertices, count, rows).blocked;
         return clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
+    }
+
+    double bounce(const std::uint32_t* vertices, std::size_t count) {
+        BakeRows rows;
+        rows.transfer = transfer.data();
+        const double begin = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+        hits += bake_vertices(mesh, scene, options, vertices, count, rows,
+                              {{&mesh, 0.5, reflected.data()}})
+                    .blocked;
+        return clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
+    }
+
+    double nearest_hits(const std::uint32_t* vertices, std::size_t count) {
+        const double begin = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::uint32_t v = vertices[k];
+            hits += scene.find_hits(scene.origin(mesh.positions[v], mesh.normals[v]),
+                                    glm::mat3(vertex_frame(mesh.normals[v], v)), local.count(),
+                                    local.x.data(), local.y.data(), local.z.data(), nearest.data());
+        }
+        return clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begin;
+    }
+
+    double turn(std::size_t who, const std::uint32_t* vertices, std::size_t count) {
+        switch (who) {
+            case 0:
+                return rays_alone(vertices, count);
+            case 1:
+                return bake(vertices, count);
+            case 2:
+                return straightforward(vertices, count);
+            case 3:
+                return bounce(vertices, count);
+            default:
+                return nearest_hits(vertices, count);
+        }
     }
 
     double straightforward(const std::uint32_t* vertices, std::size_t count) {
@@ -222,9 +264,7 @@ void run(const std::string& file, unsigned steps, std::size_t most, int rounds, 
             for (std::size_t i = 0; i < kContenders; ++i) {
                 const std::size_t who = (turn + i) % kContenders;
                 contest.hits = 0;
-                seconds[who] += who == 0   ? contest.rays_alone(&vertices[k], count)
-                                : who == 1 ? contest.bake(&vertices[k], count)
-                                           : contest.straightforward(&vertices[k], count);
+                seconds[who] += contest.turn(who, &vertices[k], count);
                 hits[who] += contest.hits;
             }
         }
@@ -243,7 +283,8 @@ void run(const std::string& file, unsigned steps, std::size_t most, int rounds, 
     fmt::print("{:.1f} % of the rays are free\n\n", 100 * free);
     fmt::print("{:18}{:>12}{:>14}{:>20}\n", "", "Mrays/CPU s", "of rays alone",
                "of straightforward");
-    const char* const names[] = {"rays alone", "bake_vertices", "straightforward"};
+    const char* const names[] = {"rays alone", "bake_vertices", "straightforward", "one bounce",
+                                 "nearest hits"};
     for (int who = 0; who < kContenders; ++who) {
         fmt::print("{:18}{:12.2f}{:13.1f}%{:20.2f}\n", names[who], median(speed[who]) / 1e6,
                    100 * median(of_rays[who]), median(of_plain[who]));

@@ -17,7 +17,7 @@
 #include "core/memory.h"
 #include "core/progress.h"
 #include "prt/bake.h"
-#include "prt/bounce.h"
+#include "prt/bake_scene.h"
 #include "prt/mesh_io.h"
 #include "prt/prt_key.h"
 #include "prt/prt_writer.h"
@@ -36,11 +36,9 @@ struct BakeRequest {
     MeshReadOptions read;
     PrtType type = PrtType::float32;
     int bounces = 0;
-    double albedo = 0.5;
+    std::vector<double> albedos = {0.5};  // of the mesh, then of the occluders
     bool albedo_given = false;
 };
-
-constexpr int kLargestBounces = 64;
 
 constexpr PrtKind kBakedKinds[] = {PrtKind::visibility, PrtKind::transfer,
                                    PrtKind::unshadowed_transfer, PrtKind::bent_normal,
@@ -50,6 +48,16 @@ std::string kind_names() {
     std::string names;
     for (const PrtKind kind : kBakedKinds) names += (names.empty() ? "" : ", ") + prt_name(kind);
     return names;
+}
+
+std::vector<double> parse_albedos(const std::string& text) {
+    std::vector<double> albedos;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        albedos.push_back(parse_number(text.substr(begin, end - begin), "--albedo", {0, 1}));
+        begin = end + 1;
+    }
+    return albedos;
 }
 
 std::vector<PrtKind> parse_kinds(const std::string& text) {
@@ -101,7 +109,10 @@ PrtKey key_of(const BakeRequest& request, const Mesh& mesh, const std::vector<Me
     hash.add_integer(request.scene.ground_height ? 1 : 0);
     hash.add(request.scene.ground_height.value_or(0));
     hash.add_integer(static_cast<std::uint64_t>(request.bounces));
-    hash.add(request.bounces > 0 ? request.albedo : 0.0);
+    for (std::size_t i = 0; i <= occluders.size(); ++i) {
+        const bool reflects = request.bounces > 0 && i < request.albedos.size();
+        hash.add(reflects ? request.albedos[i] : 0.0);
+    }
     for (const PrtKind kind : request.kinds) hash.add(prt_name(kind));
     hash.add(prt_name(request.type));
     return hash.key();
@@ -142,6 +153,12 @@ void check(const BakeRequest& request, const CommonOptions& common) {
     if (request.albedo_given && request.bounces == 0) {
         throw Error(ErrorCode::usage, "goes with --bounces only", "--albedo");
     }
+    if (request.albedos.size() > 1 + request.occluders.size()) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("names {} albedos, there are {} meshes", request.albedos.size(),
+                                1 + request.occluders.size()),
+                    "--albedo");
+    }
     if (request.bounces > 0 && !has(request, PrtKind::transfer)) {
         throw Error(ErrorCode::usage, "goes with the kind transfer only", "--bounces");
     }
@@ -163,12 +180,11 @@ void run_bake(BakeRequest request, const CommonOptions& common) {
     const double read_seconds = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
-    std::vector<const Mesh*> hiding;
-    for (const Mesh& occluder : occluders) hiding.push_back(&occluder);
-    const RayScene scene(mesh, hiding, request.scene);
-    const double scene_seconds = seconds_since(start);
-
-    start = std::chrono::steady_clock::now();
+    BakeScene meshes;
+    meshes.meshes.push_back(&mesh);
+    for (const Mesh& occluder : occluders) meshes.meshes.push_back(&occluder);
+    meshes.albedos = request.albedos;
+    meshes.rays = request.scene;
     BakeKinds kinds;
     kinds.visibility = has(request, PrtKind::visibility);
     kinds.transfer = has(request, PrtKind::transfer);
@@ -179,13 +195,9 @@ void run_bake(BakeRequest request, const CommonOptions& common) {
     drawing.quiet = common.verbosity < 0;
     Bake bake;
     {
-        const auto passes = static_cast<std::uint64_t>(1 + request.bounces);
-        Progress progress("bake", passes * mesh.positions.size(), drawing);
-        bake = bake_mesh(mesh, scene, request.bake, kinds, common.max_memory, &progress);
-        if (request.bounces > 0) {
-            add_bounces(mesh, scene, request.bake, request.albedo, request.bounces, bake,
-                        &progress);
-        }
+        Progress progress("bake", bake_scene_ticks(meshes, request.bounces), drawing);
+        bake =
+            bake_scene(meshes, request.bake, request.bounces, kinds, common.max_memory, &progress);
     }
     const double bake_seconds = seconds_since(start);
     const std::vector<std::string> notes = notes_of(read, bake.report, !occluders.empty());
@@ -211,25 +223,22 @@ void run_bake(BakeRequest request, const CommonOptions& common) {
          notes}}.dump());
     const double write_seconds = seconds_since(start);
     if (!common.json) return;
-    print(nlohmann::ordered_json{{"version", AIRLIGHT_VERSION},
-                                 {"input", input},
-                                 {"output", request.output},
-                                 {"vertices", mesh.positions.size()},
-                                 {"triangles", scene.report().triangles},
-                                 {"order", request.bake.order},
-                                 {"rays", bake.report.rays},
-                                 {"bounces", request.bounces},
-                                 {"blocked", bake.report.blocked},
-                                 {"mostly_blocked_vertices", bake.report.mostly_blocked},
-                                 {"scene_bytes", scene.report().bytes},
-                                 {"key", to_text(header.key)},
-                                 {"seconds",
-                                  {{"read", read_seconds},
-                                   {"scene", scene_seconds},
-                                   {"bake", bake_seconds},
-                                   {"write", write_seconds}}},
-                                 {"peak_memory_bytes", peak_memory()},
-                                 {"notes", notes}});
+    print(nlohmann::ordered_json{
+        {"version", AIRLIGHT_VERSION},
+        {"input", input},
+        {"output", request.output},
+        {"vertices", mesh.positions.size()},
+        {"triangles", bake.scene.triangles},
+        {"order", request.bake.order},
+        {"rays", bake.report.rays},
+        {"bounces", request.bounces},
+        {"blocked", bake.report.blocked},
+        {"mostly_blocked_vertices", bake.report.mostly_blocked},
+        {"scene_bytes", bake.scene.bytes},
+        {"key", to_text(header.key)},
+        {"seconds", {{"read", read_seconds}, {"bake", bake_seconds}, {"write", write_seconds}}},
+        {"peak_memory_bytes", peak_memory()},
+        {"notes", notes}});
 }
 
 void add_flags(const Command& command, BakeRequest& request) {
@@ -249,9 +258,11 @@ void add_flags(const Command& command, BakeRequest& request) {
              [&](const std::string& text) {
                  request.bounces = parse_integer(text, "--bounces", 0, kLargestBounces);
              });
-    add_flag(command, "--albedo", "A", "Albedo of the mesh for --bounces, in [0, 1] (default: 0.5)",
+    add_flag(command, "--albedo", "A[,A...]",
+             "Albedos in [0, 1] for --bounces: the mesh's (default: 0.5), then those of the\n"
+             "occluders in their order (default: 0, black)",
              [&](const std::string& text) {
-                 request.albedo = parse_number(text, "--albedo", {0, 1});
+                 request.albedos = parse_albedos(text);
                  request.albedo_given = true;
              });
     add_flag(command, "--kind", "KIND[,KIND...]", kind_names() + " (default: visibility,transfer)",
@@ -290,7 +301,7 @@ Command declare_bake(CLI::App& program) {
         "  airlight bake bunny.obj -o bunny.prt\n"
         "  airlight bake statue.ply -o statue.prt --order 4 --rays 4096 --ground 0\n"
         "  airlight bake cup.obj -o cup.prt --bounces 3 --albedo 0.7\n"
-        "  airlight bake chair.obj -o chair.prt --occluder room.obj --kind transfer --json\n"
+        "  airlight bake chair.obj -o chair.prt --occluder room.obj --bounces 2 --albedo 0.5,0.8\n"
         "Meshes are OBJ, PLY, STL or OFF. airlight info describes the result, airlight export\n"
         "turns it into .npy or .ply.");
     const auto request = std::make_shared<BakeRequest>();

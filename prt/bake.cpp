@@ -13,19 +13,19 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "prt/bake_checks.h"
+#include "prt/blocked_sums.h"
 #include "prt/hemisphere.h"
 #include "prt/morton.h"
-#include "sh/basis_batch.h"
+#include "prt/reflected_light.h"
 #include "sh/index.h"
 #include "sh/lobes.h"
 #include "sh/rotation.h"
 #include "sh/zonal.h"
 
 namespace airlight {
-namespace detail {
+namespace {
 
-void check_bake_options(const BakeOptions& options) {
+void check_options(const BakeOptions& options) {
     if (options.order < 1 || options.order > kLargestBakeOrder) {
         throw Error(ErrorCode::usage, fmt::format("the order must be 1 to {}, got {}",
                                                   kLargestBakeOrder, options.order));
@@ -36,7 +36,7 @@ void check_bake_options(const BakeOptions& options) {
     }
 }
 
-void check_bake_vertices(const Mesh& mesh, const std::uint32_t* vertices, std::size_t count) {
+void check_vertices(const Mesh& mesh, const std::uint32_t* vertices, std::size_t count) {
     if (mesh.normals.size() != mesh.positions.size()) {
         throw Error(ErrorCode::data, fmt::format("the mesh has {} vertices and {} normals",
                                                  mesh.positions.size(), mesh.normals.size()));
@@ -54,15 +54,19 @@ void check_bake_vertices(const Mesh& mesh, const std::uint32_t* vertices, std::s
     }
 }
 
-}  // namespace detail
-namespace {
+void check_reflectors(const std::vector<Reflector>& reflectors) {
+    for (const Reflector& r : reflectors) {
+        if (!(r.albedo >= 0 && r.albedo <= 1)) {
+            throw Error(ErrorCode::usage,
+                        fmt::format("an albedo must be in [0, 1], got {}", r.albedo));
+        }
+    }
+}
 
-// Directions that are turned, traced and summed at a time: their arrays stay in the cache.
-constexpr std::size_t kDirections = 2048;
+// Directions that are traced at a time: their arrays stay in the cache.
+constexpr std::size_t kDirections = detail::BlockedSums::kMostSamples;
 // Vertices of a task: tens of milliseconds.
 constexpr std::size_t kVertices = 128;
-// Blocked directions that wait to be summed.
-constexpr std::size_t kPending = 24 << 10;
 
 // What all vertices share.
 struct Plan {
@@ -71,6 +75,7 @@ struct Plan {
           // The bent normal comes from degree 1.
           sum_order(std::max(2, options.order)),
           local(fibonacci_hemisphere(static_cast<std::size_t>(options.rays))),
+          weight(static_cast<float>(2 * kPi / options.rays)),
           hemisphere(zonal_coefficients(phong_eigenvalues(0, sum_order))),
           cosine(zonal_coefficients(clamped_cosine_eigenvalues(options.order))) {
         for (double& value : cosine) value /= kPi;
@@ -78,110 +83,47 @@ struct Plan {
 
     int order, sum_order;
     HemisphereDirections local;
+    float weight;  // of each direction
     std::vector<double> hemisphere, cosine;
 };
 
-// The blocked directions of a block of vertices, and their sums of Y and of (n omega) Y.
-//
-// Rays come first and sums later, for many vertices at a time: where sums run in AVX-512, a
-// processor may lower its clock for a while, and taking turns vertex by vertex cost 4 to 6 % of the
-// whole bake.
-class BlockedSums {
+// The directions of a vertex that are blocked, so many at a time.
+class BlockedSamples {
   public:
-    BlockedSums(const Plan& plan, bool with_cosine, std::size_t vertices)
-        : plan_(plan),
-          channels_(with_cosine ? 2 : 1),
-          size_(sh_count(plan.sum_order)),
-          turned_(3 * kDirections),
-          values_(2 * kDirections),
-          hits_(kPending),
-          frames_(vertices),
-          sums_(2 * size_ * vertices) {}
-
-    /// The number of blocked directions of the block's vertex k.
-    std::size_t trace(const RayScene& scene, std::size_t k, const glm::vec3& origin,
-                      const glm::mat3& frame) {
-        frames_[k] = frame;
-        const std::size_t count = plan_.local.count();
-        std::size_t blocked = 0;
-        for (std::size_t begin = 0; begin < count; begin += kDirections) {
-            const std::size_t size = std::min(kDirections, count - begin);
-            if (pending_ + size > kPending) sum();
-            const std::size_t found = scene.find_blocked(
-                origin, frame, size, plan_.local.x.data() + begin, plan_.local.y.data() + begin,
-                plan_.local.z.data() + begin, hits_.data() + pending_);
-            if (found > 0) segments_.push_back({k, begin, pending_, found});
-            pending_ += found;
-            blocked += found;
-        }
-        return blocked;
+    BlockedSamples() : hits_(kDirections) {
+        for (auto* values : {&x_, &y_, &z_, &weight_}) values->resize(kDirections);
     }
 
-    /// Adds up what was traced so far.
-    void sum() {
-        float* const x = turned_.data();
-        for (const Segment& segment : segments_) {
-            // The same numbers as were traced, turned once more rather than kept.
-            const std::uint32_t* const hits = hits_.data() + segment.first;
-            for (std::size_t h = 0; h < segment.count; ++h) {
-                const std::size_t i = segment.begin + hits[h];
-                local_[0][h] = plan_.local.x[i];
-                local_[1][h] = plan_.local.y[i];
-                local_[2][h] = plan_.local.z[i];
-            }
-            turn(frames_[segment.vertex], segment.count, local_[0], local_[1], local_[2], x);
-            // A segment is one vertex's and is summed by itself, so a result does not depend on
-            // what else was pending.
-            std::fill_n(values_.data(), segment.count, 1.0f);
-            std::copy_n(local_[2], segment.count, values_.data() + segment.count);
-            project_basis_batch(plan_.sum_order, segment.count, x, x + kDirections,
-                                x + 2 * kDirections, channels_, values_.data(),
-                                sums_.data() + 2 * size_ * segment.vertex);
+    detail::Samples find(const RayScene& scene, const glm::vec3& origin, const glm::mat3& frame,
+                         const Plan& plan, std::size_t begin) {
+        const HemisphereDirections& local = plan.local;
+        const std::size_t found = scene.find_blocked(
+            origin, frame, std::min(kDirections, local.count() - begin), local.x.data() + begin,
+            local.y.data() + begin, local.z.data() + begin, hits_.data());
+        for (std::size_t h = 0; h < found; ++h) {
+            const std::size_t i = begin + hits_[h];
+            x_[h] = local.x[i];
+            y_[h] = local.y[i];
+            z_[h] = local.z[i];
         }
-        segments_.clear();
-        pending_ = 0;
+        std::fill_n(weight_.data(), found, plan.weight);
+        return {found, x_.data(), y_.data(), z_.data(), weight_.data()};
     }
-
-    const double* of_basis(std::size_t k) const { return sums_.data() + 2 * size_ * k; }
-    const double* of_cosine(std::size_t k) const { return of_basis(k) + size_; }
 
   private:
-    struct Segment {
-        std::size_t vertex, begin, first, count;
-    };
-
-    static void turn(const glm::mat3& f, std::size_t count, const float* x, const float* y,
-                     const float* z, float* out) {
-        for (int axis = 0; axis < 3; ++axis, out += kDirections) {
-            const float a = f[0][axis], b = f[1][axis], c = f[2][axis];
-            for (std::size_t i = 0; i < count; ++i) out[i] = a * x[i] + b * y[i] + c * z[i];
-        }
-    }
-
-    const Plan& plan_;
-    int channels_;
-    std::size_t size_, pending_ = 0;
-    float local_[3][kDirections];
-    AlignedVector<float> turned_, values_;
     AlignedVector<std::uint32_t> hits_;
-    std::vector<Segment> segments_;
-    std::vector<glm::mat3> frames_;
-    std::vector<double> sums_;
+    AlignedVector<float> x_, y_, z_, weight_;
 };
 
-void write_difference(std::size_t size, const double* whole, double weight, const double* sums,
-                      float* out) {
-    for (std::size_t i = 0; i < size; ++i) {
-        out[i] = static_cast<float>(whole[i] - weight * sums[i]);
-    }
+void write(std::size_t size, const double* values, float* out) {
+    for (std::size_t i = 0; i < size; ++i) out[i] = static_cast<float>(values[i]);
 }
 
 // Both by-products are moments of V over the hemisphere: int V omega = sqrt(4 pi / 3) v_1, and its
 // component along the normal is pi times ambient occlusion.
-void write_moments(const glm::dvec3& normal, double weight, const double* sums, float* occlusion,
+void write_moments(const glm::dvec3& normal, double rays, const double* sums, float* occlusion,
                    float* bent) {
-    const double unit = std::sqrt(4 * kPi / 3);
-    const glm::dvec3 blocked = unit * weight * glm::dvec3(sums[3], sums[1], sums[2]);
+    const glm::dvec3 blocked = std::sqrt(4 * kPi / 3) * glm::dvec3(sums[3], sums[1], sums[2]);
     if (occlusion) {
         const double open = 1 - glm::dot(blocked, normal) / kPi;
         *occlusion = static_cast<float>(std::clamp(open, 0.0, 1.0));
@@ -190,7 +132,7 @@ void write_moments(const glm::dvec3& normal, double weight, const double* sums, 
         glm::dvec3 free = kPi * normal - blocked;
         const double length = glm::length(free);
         // What is left of a hemisphere that is all blocked is the error of the rule.
-        free = length > 1e-2 * std::sqrt(weight) ? free / length : normal;
+        free = length > 1e-2 * std::sqrt(2 * kPi / rays) ? free / length : normal;
         for (int axis = 0; axis < 3; ++axis) bent[axis] = static_cast<float>(free[axis]);
     }
 }
@@ -200,46 +142,56 @@ bool needs_rays(const BakeRows& rows) {
 }
 
 BakeReport bake_block(const Plan& plan, const Mesh& mesh, const RayScene& scene,
-                      const std::uint32_t* vertices, std::size_t count, const BakeRows& rows) {
+                      const std::vector<Reflector>& reflectors, const std::uint32_t* vertices,
+                      std::size_t count, const BakeRows& rows) {
     const std::size_t size = sh_count(plan.order), rays = plan.local.count();
     BakeReport report;
     report.vertices = count;
-    BlockedSums sums(plan, rows.transfer != nullptr, count);
+    detail::BlockedSums sums(plan.sum_order, rows.transfer != nullptr, count);
+    detail::ReflectedLight light(scene, reflectors, plan.order);
+    const bool reflects = rows.transfer && light.any();
+    std::vector<double> reflected(reflects ? size * count : 0);
     if (needs_rays(rows)) {
         report.rays = count * rays;
+        BlockedSamples samples;
         for (std::size_t k = 0; k < count; ++k) {
             const std::uint32_t v = vertices[k];
             const glm::dvec3 normal = glm::normalize(mesh.normals[v]);
-            const std::size_t blocked =
-                sums.trace(scene, k, scene.origin(mesh.positions[v], normal),
-                           glm::mat3(vertex_frame(normal, v)));
+            const glm::vec3 origin = scene.origin(mesh.positions[v], normal);
+            const glm::mat3 frame(vertex_frame(normal, v));
+            std::size_t blocked = 0;
+            for (std::size_t begin = 0; begin < rays; begin += kDirections) {
+                const detail::Samples found = samples.find(scene, origin, frame, plan, begin);
+                sums.add(k, frame, found);
+                if (reflects) light.add(origin, frame, found, reflected.data() + size * k);
+                blocked += found.count;
+            }
             report.blocked += blocked;
             report.mostly_blocked += 2 * blocked > rays ? 1 : 0;
         }
-        sums.sum();
+        sums.finish();
     }
-    const double weight = 2 * kPi / static_cast<double>(rays);
-    std::vector<double> whole(sh_count(plan.sum_order));
+    std::vector<double> row(sh_count(plan.sum_order));
     for (std::size_t k = 0; k < count; ++k) {
         const glm::dvec3 normal = glm::normalize(mesh.normals[vertices[k]]);
         if (rows.visibility) {
-            rotate_zonal(plan.order, plan.hemisphere.data(), normal, whole.data());
-            write_difference(size, whole.data(), weight, sums.of_basis(k),
-                             rows.visibility + k * size);
+            rotate_zonal(plan.order, plan.hemisphere.data(), normal, row.data());
+            for (std::size_t i = 0; i < size; ++i) row[i] -= sums.of_basis(k)[i];
+            write(size, row.data(), rows.visibility + k * size);
         }
         if (rows.transfer || rows.unshadowed_transfer) {
-            rotate_zonal(plan.order, plan.cosine.data(), normal, whole.data());
+            rotate_zonal(plan.order, plan.cosine.data(), normal, row.data());
         }
+        if (rows.unshadowed_transfer) write(size, row.data(), rows.unshadowed_transfer + k * size);
         if (rows.transfer) {
-            write_difference(size, whole.data(), weight / kPi, sums.of_cosine(k),
-                             rows.transfer + k * size);
-        }
-        if (rows.unshadowed_transfer) {
-            std::transform(whole.data(), whole.data() + size, rows.unshadowed_transfer + k * size,
-                           [](double value) { return static_cast<float>(value); });
+            for (std::size_t i = 0; i < size; ++i) {
+                row[i] -= sums.of_cosine(k)[i] / kPi;
+                if (reflects) row[i] += reflected[k * size + i];
+            }
+            write(size, row.data(), rows.transfer + k * size);
         }
         if (rows.ambient_occlusion || rows.bent_normal) {
-            write_moments(normal, weight, sums.of_basis(k),
+            write_moments(normal, static_cast<double>(rays), sums.of_basis(k),
                           rows.ambient_occlusion ? rows.ambient_occlusion + k : nullptr,
                           rows.bent_normal ? rows.bent_normal + 3 * k : nullptr);
         }
@@ -267,13 +219,14 @@ BakeRows BakeRows::from(std::size_t row, int order) const {
 
 BakeReport bake_vertices(const Mesh& mesh, const RayScene& scene, const BakeOptions& options,
                          const std::uint32_t* vertices, std::size_t count, const BakeRows& rows,
-                         Progress* progress) {
-    detail::check_bake_options(options);
-    detail::check_bake_vertices(mesh, vertices, count);
+                         const std::vector<Reflector>& reflectors, Progress* progress) {
+    check_options(options);
+    check_vertices(mesh, vertices, count);
+    check_reflectors(reflectors);
     const Plan plan(options);
     const auto bake_some = [&](std::size_t begin, std::size_t end) {
-        const BakeReport report = bake_block(plan, mesh, scene, vertices + begin, end - begin,
-                                             rows.from(begin, options.order));
+        const BakeReport report = bake_block(plan, mesh, scene, reflectors, vertices + begin,
+                                             end - begin, rows.from(begin, options.order));
         if (progress) progress->tick(end - begin);
         return report;
     };
@@ -289,8 +242,9 @@ BakeRows Bake::rows() {
 }
 
 Bake bake_mesh(const Mesh& mesh, const RayScene& scene, const BakeOptions& options,
-               const BakeKinds& kinds, std::size_t max_memory, Progress* progress) {
-    detail::check_bake_options(options);
+               const BakeKinds& kinds, std::size_t max_memory,
+               const std::vector<Reflector>& reflectors, Progress* progress) {
+    check_options(options);
     const std::size_t vertices = mesh.positions.size(), size = sh_count(options.order);
     const std::size_t floats = (kinds.visibility ? size : 0) + (kinds.transfer ? size : 0) +
                                (kinds.unshadowed_transfer ? size : 0) +
@@ -306,6 +260,7 @@ Bake bake_mesh(const Mesh& mesh, const RayScene& scene, const BakeOptions& optio
         bake.bent_normal.resize(kinds.bent_normal ? rows * 3 : 0);
     };
     Bake all, part;
+    all.scene = scene.report();
     allocate(all, vertices);
     // Results are made in Morton order and laid out in the order of the file.
     constexpr std::size_t kPart = 16384;
@@ -314,7 +269,8 @@ Bake bake_mesh(const Mesh& mesh, const RayScene& scene, const BakeOptions& optio
     for (std::size_t begin = 0; begin < vertices; begin += kPart) {
         const std::size_t count = std::min(kPart, vertices - begin);
         const std::uint32_t* const here = order.data() + begin;
-        add(all.report, bake_vertices(mesh, scene, options, here, count, part.rows(), progress));
+        add(all.report,
+            bake_vertices(mesh, scene, options, here, count, part.rows(), reflectors, progress));
         const auto scatter = [&](const std::vector<float>& from, std::vector<float>& to,
                                  std::size_t width) {
             for (std::size_t k = 0; k < count && !to.empty(); ++k) {

@@ -19,6 +19,13 @@
 //     t = a (n) / pi - (2 / N) sum_blocked (n omega) Y,  a the clamped cosine of sh/lobes.h.
 // Where nothing is blocked the result is exact to float.
 //
+// Light that comes back from other parts of the scene is one more term of transfer: with rho and
+// t the albedo and the transfer of the nearest point q on the ray, t interpolated between the
+// corners of its triangle ([Sloan02] section 4),
+//     (B t)_lm = (1/pi) int (1 - V) max(0, n omega) rho(q) t_lm(q) d omega
+// over the directions that were found blocked, so nothing else changes. b bounces are b + 1 passes,
+// t_k = t_0 + B t_{k-1} (prt/bake_scene.h makes them). Backs of triangles and the ground are black.
+//
 // Error, relative RMS over 512 vertices at order 6 against 65536 rays, and CPU time of a vertex
 // (bench/bake_bench.cpp --vertices 512 --truth 65536; of bunny 15 % of the rays are blocked, of
 // nefertiti 10 %):
@@ -72,15 +79,24 @@ struct BakeReport {
     std::uint64_t mostly_blocked = 0;
 };
 
+/// What a mesh of the scene sends on, at RayHit::mesh = its place in a list. Those that the list
+/// lacks, and those without a mesh or transfer, are black.
+struct Reflector {
+    const Mesh* mesh = nullptr;
+    double albedo = 0;                ///< [0, 1]
+    const float* transfer = nullptr;  ///< (vertices, order^2) of the mesh, in its order
+};
+
 /// Bakes the vertices numbered vertices[0] … vertices[count - 1] of the mesh whose scene is given,
-/// into rows 0 … count - 1. In parallel; a row depends on the scene, the options and its vertex's
-/// number, position and normal alone, to the bit. For speed, list vertices in the order of
-/// prt/morton.h. Counts vertices at `progress`.
+/// into rows 0 … count - 1. In parallel; a row depends on the scene, the options, the reflectors
+/// and its vertex's number, position and normal alone, to the bit. For speed, list vertices in the
+/// order of prt/morton.h. Reflectors add to the kind transfer only. Counts vertices at `progress`.
 ///
-/// Throws Error: usage for options outside their domain; data for a mesh without a normal per
-/// vertex or with one whose squared length is not within 1e-5 of 1.
+/// Throws Error: usage for options or an albedo outside their domain; data for a mesh without a
+/// normal per vertex or with one whose squared length is not within 1e-5 of 1.
 BakeReport bake_vertices(const Mesh& mesh, const RayScene& scene, const BakeOptions& options,
                          const std::uint32_t* vertices, std::size_t count, const BakeRows& rows,
+                         const std::vector<Reflector>& reflectors = {},
                          Progress* progress = nullptr);
 
 /// What to keep of a whole mesh.
@@ -94,6 +110,7 @@ struct Bake {
     int order = 0;
     std::vector<float> visibility, transfer, unshadowed_transfer, ambient_occlusion, bent_normal;
     BakeReport report;
+    RaySceneReport scene;
 
     BakeRows rows();
 };
@@ -102,6 +119,6 @@ struct Bake {
 /// than max_memory.
 Bake bake_mesh(const Mesh& mesh, const RayScene& scene, const BakeOptions& options = {},
                const BakeKinds& kinds = {}, std::size_t max_memory = kDefaultMaxMemory,
-               Progress* progress = nullptr);
+               const std::vector<Reflector>& reflectors = {}, Progress* progress = nullptr);
 
 }  // namespace airlight

@@ -168,9 +168,23 @@ std::uint64_t add_mesh(const EmbreeScene& scene, const Mesh& mesh, const glm::dv
 }
 
 // Embree leaves rays alone whose end lies before their beginning.
-void stop_at_ground(float height, std::size_t count, RTCRay* rays) {
+constexpr float kStopped = -1;
+
+// Rays that meet the ground, sooner or later, are blocked.
+void stop_over_ground(float height, std::size_t count, RTCRay* rays) {
     for (std::size_t i = 0; i < count; ++i) {
-        if (rays[i].dir_y < 0 || rays[i].org_y < height) rays[i].tfar = -1;
+        if (rays[i].dir_y < 0 || rays[i].org_y < height) rays[i].tfar = kStopped;
+    }
+}
+
+void end_at_ground(float height, std::size_t count, RTCRay* rays) {
+    for (std::size_t i = 0; i < count; ++i) {
+        RTCRay& ray = rays[i];
+        if (ray.org_y < height) {
+            ray.tfar = kStopped;
+        } else if (ray.dir_y < 0) {
+            ray.tfar = (height - ray.org_y) / ray.dir_y;
+        }
     }
 }
 
@@ -264,7 +278,6 @@ void RayScene::for_packets(const glm::vec3& origin, const glm::mat3& frame, std:
         if (!detail::aim_rays(frame, size, x + begin, y + begin, z + begin, rays)) {
             throw Error(ErrorCode::data, "the direction of a ray is not finite");
         }
-        if (ground_) stop_at_ground(*ground_, size, rays);
         trace(begin, size, rays);
     }
 }
@@ -275,6 +288,7 @@ std::size_t RayScene::find_blocked(const glm::vec3& origin, const glm::mat3& fra
     RTCIntersectContext context = detail::incoherent_context();
     std::size_t found = 0;
     const auto trace = [&](std::size_t begin, std::size_t size, RTCRay* rays) {
+        if (ground_) stop_over_ground(*ground_, size, rays);
         {
             const detail::FlushDenormals flush;
             rtcOccluded1M(embree_->scene, &context, rays, static_cast<unsigned>(size),
@@ -296,7 +310,8 @@ std::size_t RayScene::find_hits(const glm::vec3& origin, const glm::mat3& frame,
     RTCIntersectContext context = detail::incoherent_context();
     alignas(64) RTCRayHit full[kRayPacket];
     std::size_t found = 0;
-    const auto trace = [&](std::size_t begin, std::size_t size, const RTCRay* rays) {
+    const auto trace = [&](std::size_t begin, std::size_t size, RTCRay* rays) {
+        if (ground_) end_at_ground(*ground_, size, rays);
         for (std::size_t i = 0; i < size; ++i) {
             full[i].ray = rays[i];
             full[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;

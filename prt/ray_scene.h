@@ -97,9 +97,9 @@ class RayScene {
                              const float* x, const float* y, const float* z,
                              std::uint32_t* hits) const;
 
-    /// The nearest triangle on each of those rays that meets one: writes them in the order of the
-    /// rays and returns how many. The ground hides what is under it and is not among them. Throws
-    /// as find_blocked; takes 1.7 to 1.9 times as long.
+    /// The nearest triangle on each of those rays that meets one above the ground: writes them in
+    /// the order of the rays and returns how many. Throws as find_blocked; takes 1.7 to 1.9 times
+    /// as long.
     std::size_t find_hits(const glm::vec3& origin, const glm::mat3& frame, std::size_t count,
                           const float* x, const float* y, const float* z, RayHit* hits) const;
 

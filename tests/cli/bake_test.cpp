@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "prt/bake.h"
-#include "prt/bounce.h"
+#include "prt/bake_scene.h"
 #include "prt/mesh_io.h"
 #include "prt/prt_key.h"
 #include "prt/prt_reader.h"
@@ -74,12 +74,35 @@ TEST_F(BakeCommand, BouncesAddLightBetweenParts) {
     const Outcome outcome = run(words);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const Mesh mesh = read_mesh(bowl);
-    const RayScene scene(mesh);
-    Bake expected = bake_mesh(mesh, scene, {3, 512});
-    const std::vector<float> direct = expected.transfer;
-    add_bounces(mesh, scene, {3, 512}, 0.7, 2, expected);
-    EXPECT_EQ(PrtReader(path_).read_all(PrtKind::transfer), expected.transfer);
-    EXPECT_NE(direct, expected.transfer);
+    const BakeScene scene = {{&mesh}, {0.7}, {}};
+    const std::vector<float> expected = bake_scene(scene, {3, 512}, 2).transfer;
+    EXPECT_EQ(PrtReader(path_).read_all(PrtKind::transfer), expected);
+    EXPECT_NE(bake_scene(scene, {3, 512}, 0).transfer, expected);
+}
+
+TEST_F(BakeCommand, OccludersReflectWithTheirOwnAlbedos) {
+    const std::string floor = directory_ / "floor.obj", roof = directory_ / "roof.obj",
+                      wall = directory_ / "wall.obj";
+    write_bytes(floor, "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n");
+    write_bytes(roof, "v -1 1 -1\nv 3 1 -1\nv -1 1 3\nf 1 2 3\n");
+    write_bytes(wall, "v -2 0 -2\nv -2 0 2\nv -2 2 0\nf 1 3 2\n");
+    const Mesh meshes[] = {read_mesh(floor), read_mesh(roof), read_mesh(wall)};
+    struct Case {
+        std::string flag;
+        std::vector<double> albedos;
+    };
+    std::vector<std::vector<float>> seen;
+    for (const Case& c : {Case{"0.5", {0.5}}, Case{"0.5,0.9", {0.5, 0.9}},
+                          Case{"0,0,0.7", {0, 0, 0.7}}, Case{"0.5,0.9,0.7", {0.5, 0.9, 0.7}}}) {
+        const Outcome outcome =
+            run({"bake", floor, "-o", path_, "--rays", "512", "--occluder", roof, "--occluder",
+                 wall, "--bounces", "2", "--albedo", c.flag, "--order", "3", "--force"});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        const BakeScene scene = {{&meshes[0], &meshes[1], &meshes[2]}, c.albedos, {}};
+        seen.push_back(PrtReader(path_).read_all(PrtKind::transfer));
+        EXPECT_EQ(seen.back(), bake_scene(scene, {3, 512}, 2).transfer) << c.flag;
+    }
+    for (std::size_t i = 1; i < seen.size(); ++i) EXPECT_NE(seen[i], seen[i - 1]);
 }
 
 // Two parallel triangles: each takes light from the other, whichever of the two is baked.
@@ -118,7 +141,10 @@ TEST_F(BakeCommand, MistakesAreSaidInOneSentence) {
     refused(call({"--rays", "0"}), 2, "--rays");
     refused(call({"--albedo", "0.5"}), 2, "--albedo: goes with --bounces only");
     refused(call({"--bounces", "1", "--kind", "visibility"}), 2, "--bounces: goes with the kind");
-    refused(call({"--bounces", "1", "--albedo", "1.5"}), 2, "--albedo");
+    for (const char* albedo : {"1.5", "0.5,", ",0.5", "0.5,nan", "0.5;0.5", ""}) {
+        refused(call({"--bounces", "1", "--albedo", albedo}), 2, "--albedo");
+    }
+    refused(call({"--bounces", "1", "--albedo", "0.5,0.5"}), 2, "--albedo: names 2 albedos");
     refused(call({"--kind", "glow"}), 2, "--kind: 'glow' is no kind");
     refused(call({"--kind", "transfer,transfer"}), 2, "named twice");
     refused(call({"--ground", "nan"}), 2, "--ground");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "prt/bounce.h"
+#include "prt/bake_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/threads.h"
-#include "prt/morton.h"
 #include "sh/index.h"
 #include "sh/lobes.h"
 #include "sh/zonal.h"
@@ -45,12 +44,9 @@ Mesh make_bowl(double angle, unsigned rings) {
 }
 
 Bake bake_bowl(const Mesh& bowl, int rays, double albedo, int bounces) {
-    const RayScene scene(bowl);
     BakeOptions options;
     options.rays = rays;
-    Bake bake = bake_mesh(bowl, scene, options);
-    add_bounces(bowl, scene, options, albedo, bounces, bake);
-    return bake;
+    return bake_scene({{&bowl}, {albedo}, {}}, options, bounces);
 }
 
 // Within a sphere every point sends the same to every other, so all vertices of a bowl of which the
@@ -94,41 +90,112 @@ TEST(Bounce, AWhiteBowlUnderAWhiteSkyIsWhite) {
     }
 }
 
-TEST(Bounce, BacksAndOccludersAreBlack) {
-    // A floor under a lid that looks away from it, and one that looks at it.
-    const Mesh floor = make_floor();
-    Mesh lid = make_quad({-3, -3, 0.5}, {6, 0, 0}, {0, 6, 0});
-    BakeOptions options;
-    options.order = 2;
-    for (const bool facing : {false, true}) {
-        Mesh both = floor;
-        const auto base = static_cast<unsigned>(both.positions.size());
-        both.positions.insert(both.positions.end(), lid.positions.begin(), lid.positions.end());
-        for (const glm::uvec3& t : lid.triangles) {
-            both.triangles.push_back(base + (facing ? glm::uvec3(t.x, t.z, t.y) : t));
-        }
-        add_normals(both);
-        const RayScene scene(both), with_occluder(floor, {&lid});
-        std::vector<float> before(4 * both.positions.size(), 1.0f), after(4);
-        const std::uint32_t middle = 0;
-        bake_bounce(both, scene, options, 0.5, before.data(), &middle, 1, after.data());
-        // Almost all of the hemisphere, weighted by the cosine, meets the lid.
-        EXPECT_NEAR(after[0], facing ? 0.5 * 0.97 : 0.0, 0.02);
-        bake_bounce(floor, with_occluder, options, 0.5, before.data(), &middle, 1, after.data());
-        EXPECT_EQ(after[0], 0.0f);
+// A part of the bowl that lies in another mesh of the same albedo is part of the bowl.
+TEST(Bounce, OccludersReflectAsPartsOfTheMeshDo) {
+    const Mesh bowl = make_bowl(2, 12);
+    Mesh near = bowl, far = bowl;
+    near.triangles.clear();
+    far.triangles.clear();
+    for (const glm::uvec3& t : bowl.triangles) {
+        (bowl.positions[t.x].x + bowl.positions[t.y].x > 0 ? near : far).triangles.push_back(t);
     }
+    BakeOptions options;
+    options.rays = 700;
+    // Equal numbers of vertices give equal directions; the boxes of near and far, and with them
+    // their units and lifts, differ.
+    const Bake one = bake_scene({{&bowl}, {0.8}, {}}, options, 3);
+    const Bake first = bake_scene({{&near, &far}, {0.8, 0.8}, {}}, options, 3);
+    const Bake second = bake_scene({{&far, &near}, {0.8, 0.8}, {}}, options, 3);
+    const Bake black = bake_scene({{&near, &far}, {0.8}, {}}, options, 3);
+    double worst = 0, without = 0;
+    const auto used_by = [](const Mesh& mesh) {
+        std::vector<bool> used(mesh.positions.size());
+        for (const glm::uvec3& t : mesh.triangles) used[t.x] = used[t.y] = used[t.z] = true;
+        return used;
+    };
+    const std::vector<bool> in_near = used_by(near), in_far = used_by(far);
+    for (std::size_t v = 0; v < bowl.positions.size(); ++v) {
+        for (std::size_t i = 36 * v; i < 36 * v + 36; ++i) {
+            const double expected = one.transfer[i];
+            if (in_near[v]) {
+                worst = std::max(worst, std::abs(expected - first.transfer[i]));
+                without = std::max(without, std::abs(expected - black.transfer[i]));
+            }
+            if (in_far[v]) worst = std::max(worst, std::abs(expected - second.transfer[i]));
+        }
+    }
+    // A ray of 700 beside an edge is worth up to 3e-3.
+    EXPECT_LT(worst, 3e-3);
+    EXPECT_GT(without, 0.05);
+}
+
+TEST(Bounce, TransferWithoutBouncesIsThatOfBouncesInBlack) {
+    const Mesh bowl = make_bowl(2, 12);
+    const Mesh lid = make_quad({-3, -3, 1.5}, {0, 6, 0}, {6, 0, 0});
+    BakeOptions options;
+    options.rays = 600;
+    const Bake direct = bake_scene({{&bowl, &lid}, {}, {}}, options, 0);
+    const Bake black = bake_scene({{&bowl, &lid}, {0, 0}, {}}, options, 4);
+    const Bake bright = bake_scene({{&bowl, &lid}, {0.5}, {}}, options, 4);
+    EXPECT_EQ(direct.transfer, black.transfer);
+    EXPECT_EQ(direct.visibility, bright.visibility);
+    EXPECT_NE(direct.transfer, bright.transfer);
+    EXPECT_EQ(direct.report.blocked, bright.report.blocked);
+}
+
+// Through bake_vertices: the middle of a floor under a lid that sends 1 in every slot.
+class BounceUnderALid : public testing::Test {
+  protected:
+    float received(const Mesh& lid, const RaySceneOptions& scene_options = {}) const {
+        const RayScene scene(floor_, {&lid}, scene_options);
+        BakeOptions options;
+        options.order = 2;
+        const std::vector<float> sent(4 * lid.positions.size(), 1.0f);
+        const std::uint32_t middle = 0;
+        float with[4], without[4];
+        BakeRows rows;
+        rows.transfer = without;
+        bake_vertices(floor_, scene, options, &middle, 1, rows);
+        rows.transfer = with;
+        bake_vertices(floor_, scene, options, &middle, 1, rows, {{}, {&lid, 0.5, sent.data()}});
+        for (int i = 1; i < 4; ++i) EXPECT_NEAR(with[i] - without[i], with[0] - without[0], 1e-6);
+        return with[0] - without[0];
+    }
+
+    const Mesh floor_ = make_floor();
+};
+
+TEST_F(BounceUnderALid, BacksAreBlackAndFrontsAreNot) {
+    const Mesh away = make_quad({-3, -3, 0.5}, {6, 0, 0}, {0, 6, 0});
+    const Mesh facing = make_quad({-3, -3, 0.5}, {0, 6, 0}, {6, 0, 0});
+    EXPECT_EQ(received(away), 0.0f);
+    // Almost all of the hemisphere, weighted by the cosine, meets the lid.
+    EXPECT_NEAR(received(facing), 0.5 * 0.97, 0.02);
+}
+
+// The floor stands upright: half of its rays go down, and those that meet the lid before the ground
+// still bring its light.
+TEST_F(BounceUnderALid, TheGroundIsBlackAndHidesOnlyWhatIsBeyondIt) {
+    const Mesh facing = make_quad({-300, -300, 0.5}, {0, 600, 0}, {600, 0, 0});
+    RaySceneOptions options;
+    EXPECT_NEAR(received(facing, options), 0.5, 2e-3);
+    options.ground_height = -1e4;
+    EXPECT_NEAR(received(facing, options), 0.5, 2e-3);
+    // Of a plane at the distance d, what lies under the height -h sends
+    // (1 - h / sqrt(h^2 + d^2)) / 2 of the whole.
+    options.ground_height = -0.5;
+    EXPECT_NEAR(received(facing, options), 0.5 * (1 - 0.5 * (1 - std::sqrt(0.5))), 2e-3);
 }
 
 TEST(Bounce, BytesDoNotDependOnThreads) {
     const Mesh bowl = make_bowl(2, 12);
-    const RayScene scene(bowl);
+    const Mesh lid = make_quad({-3, -3, 1.5}, {0, 6, 0}, {6, 0, 0});
     BakeOptions options;
     options.rays = 333;
     std::vector<float> one;
     for (const int threads : {1, 2, 3, 7}) {
         const ThreadLimit limit(threads);
-        Bake bake = bake_mesh(bowl, scene, options);
-        add_bounces(bowl, scene, options, 0.7, 3, bake);
+        const Bake bake = bake_scene({{&bowl, &lid}, {0.7, 0.9}, {}}, options, 3);
         if (one.empty()) one = bake.transfer;
         EXPECT_EQ(std::memcmp(one.data(), bake.transfer.data(), one.size() * sizeof(float)), 0);
     }
@@ -136,15 +203,28 @@ TEST(Bounce, BytesDoNotDependOnThreads) {
 
 TEST(Bounce, OptionsOutsideTheirDomainAreRefused) {
     const Mesh bowl = make_bowl(2, 4);
-    const RayScene scene(bowl);
     BakeOptions options;
     options.rays = 16;
-    Bake bake = bake_mesh(bowl, scene, options);
-    EXPECT_THROW(add_bounces(bowl, scene, options, 1.1, 1, bake), Error);
-    EXPECT_THROW(add_bounces(bowl, scene, options, std::nan(""), 1, bake), Error);
-    EXPECT_THROW(add_bounces(bowl, scene, options, 0.5, -1, bake), Error);
-    bake.order = 5;
-    EXPECT_THROW(add_bounces(bowl, scene, options, 0.5, 1, bake), Error);
+    const auto code = [&](double albedo, int bounces, std::size_t memory = kDefaultMaxMemory) {
+        try {
+            bake_scene({{&bowl}, {albedo}, {}}, options, bounces, {}, memory);
+        } catch (const Error& error) {
+            return error.code();
+        }
+        return ErrorCode::io;
+    };
+    EXPECT_EQ(code(1.1, 1), ErrorCode::usage);
+    EXPECT_EQ(code(-0.1, 1), ErrorCode::usage);
+    EXPECT_EQ(code(std::nan(""), 1), ErrorCode::usage);
+    EXPECT_EQ(code(0.5, -1), ErrorCode::usage);
+    EXPECT_EQ(code(0.5, kLargestBounces + 1), ErrorCode::usage);
+    // Two tables of transfer, and the results.
+    const std::size_t table = 36 * sizeof(float) * bowl.positions.size();
+    EXPECT_EQ(code(0.5, 1, 4 * table - 1), ErrorCode::memory);
+    EXPECT_EQ(code(0.5, 1, 8 * table + (1 << 20)), ErrorCode::io);
+    const RayScene scene(bowl);
+    EXPECT_THROW(bake_mesh(bowl, scene, options, {}, kDefaultMaxMemory, {{&bowl, 2, nullptr}}),
+                 Error);
 }
 
 }  // namespace
