@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// airlight info: what an image, a mesh, a coefficient file, a BRDF table or a .prt file holds.
+// airlight info: what any file that Airlight reads or writes holds.
 #include "envmap/info.h"
 
 #include <fmt/format.h>
@@ -13,13 +13,17 @@
 #include "cli/command.h"
 #include "cli/info_mesh.h"
 #include "cli/info_prt.h"
+#include "cli/info_scene.h"
 #include "cli/info_sh.h"
 #include "core/atomic_file.h"
 #include "core/descriptor.h"
 #include "core/error.h"
+#include "core/json_tree.h"
+#include "core/read_text.h"
 #include "envmap/io.h"
 #include "prt/mesh_io.h"
 #include "sh/brdf_file.h"
+#include "viewer/scene_file.h"
 
 namespace airlight {
 namespace {
@@ -33,6 +37,7 @@ struct FileFigures {
     std::optional<BrdfFigures> brdf;  ///< likewise of a BRDF table
     std::optional<MeshFigures> mesh;  ///< likewise of a mesh
     std::optional<PrtInfo> prt;       ///< likewise of a .prt file
+    std::optional<Scene> scene;       ///< likewise of a scene
 };
 
 // A pipe can be read once, and the header is wanted before the pixels: both take a copy.
@@ -78,6 +83,11 @@ FileFigures look_into(const std::string& path, std::size_t max_memory) {
             file.prt = look_into_prt(readable, max_memory);
             return file;
         }
+        if (looks_like_scene(readable)) {
+            const std::size_t limit = max_memory / (1 + kJsonTreeBytes);
+            file.scene = parse_scene(read_text(readable, "a scene", limit), path, max_memory);
+            return file;
+        }
         if (is_json_file(readable)) {
             file.light = read_sh_file(readable, max_memory);
             return file;
@@ -109,8 +119,10 @@ FileFigures look_into(const std::string& path, std::size_t max_memory) {
             file.notes.push_back("non-finite values count as 0 in the other figures");
         }
     } catch (const Error& error) {
-        if (readable == path) throw;
-        throw Error(error.code(), error.what(), "standard input");
+        // The copy's name means nothing to anyone; a file that the input names keeps its own.
+        const std::string& where = error.where();
+        if (readable == path || where.rfind(readable, 0) != 0) throw;
+        throw Error(error.code(), error.what(), "standard input" + where.substr(readable.size()));
     }
     return file;
 }
@@ -123,6 +135,7 @@ std::string to_lines(const FileFigures& file, bool all_attributes) {
     if (file.light) return to_lines(file.path, *file.light);
     if (file.mesh) return to_lines(file.path, *file.mesh);
     if (file.prt) return to_lines(file.path, *file.prt);
+    if (file.scene) return to_lines(file.path, *file.scene);
     if (file.brdf) return file.path + "\n" + to_lines(*file.brdf);
     const ImageInfo& header = file.header;
     std::string text = fmt::format("{}\n  {} x {} pixels, {}, channels {}, {}", file.path,
@@ -171,6 +184,7 @@ nlohmann::ordered_json to_json(const FileFigures& file) {
     if (file.light) return to_json(file.path, *file.light);
     if (file.mesh) return to_json(file.path, *file.mesh);
     if (file.prt) return to_json(file.path, *file.prt);
+    if (file.scene) return to_json(file.path, *file.scene);
     if (file.brdf) {
         nlohmann::ordered_json json = {{"file", file.path}, {"format", "brdf"}};
         json.update(to_json(*file.brdf));
@@ -236,21 +250,23 @@ void run_info(const std::vector<std::string>& paths, const CommonOptions& common
 }  // namespace
 
 Command declare_info(CLI::App& program) {
-    Command command = declare_command(
-        program, "info", "FILE...",
-        "Tell what an image, a mesh, a coefficient file, a BRDF table or a .prt file holds",
-        "  airlight info room.exr foggy.exr\n"
-        "  airlight info room.exr --json\n"
-        "  airlight info bunny.obj\n"
-        "  airlight info paint.binary\n"
-        "  airlight info bunny.prt\n"
-        "With -v, all attributes of the file are listed.");
+    Command command = declare_command(program, "info", "FILE...",
+                                      "Tell what an image, a mesh, a coefficient file, a BRDF "
+                                      "table, a .prt file or a scene holds",
+                                      "  airlight info room.exr foggy.exr\n"
+                                      "  airlight info room.exr --json\n"
+                                      "  airlight info bunny.obj\n"
+                                      "  airlight info paint.binary\n"
+                                      "  airlight info bunny.prt\n"
+                                      "  airlight info courtyard.json\n"
+                                      "With -v, all attributes of the file are listed.");
     const auto paths = std::make_shared<std::vector<std::string>>();
     command.app
         ->add_option(
             "files", *paths,
             "Images (.exr, .hdr, .pfm, .tif), meshes (.obj, .ply, .stl, .off), coefficient files "
-            "of airlight sh, BRDF tables (.binary), transfer (.prt); - is standard input")
+            "of airlight sh, BRDF tables (.binary), transfer (.prt), scenes (.json); - is standard "
+            "input")
         ->option_text(" ");
     add_json_flag(command, "Print the figures as JSON");
     add_max_memory_flag(command);

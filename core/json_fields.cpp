@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/error.h"
@@ -115,10 +116,12 @@ double JsonFields::number(const char* key, double low, double high) const {
 
 int JsonFields::integer(const char* key, int low, int high) const {
     const JsonValue& value = at(key);
-    if (!value.is_integer() || !(value.number() >= low && value.number() <= high)) {
+    const double number = value.number();
+    if (value.kind() != JsonValue::Kind::number || number != std::floor(number) ||
+        !(number >= low && number <= high)) {
         refuse_value(key, value, fmt::format("an integer in [{}, {}]", low, high));
     }
-    return static_cast<int>(value.number());
+    return static_cast<int>(number);
 }
 
 bool JsonFields::boolean(const char* key) const {

@@ -4,19 +4,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <string_view>
-#include <system_error>
 
-#include "core/atomic_file.h"
 #include "core/constants.h"
 #include "core/descriptor.h"
 #include "core/error.h"
 #include "core/json_fields.h"
-#include "core/open_input.h"
+#include "core/read_text.h"
 #include "sh/index.h"
 #include "sh/sh_file.h"
 #include "sh/sh_file_text.h"
@@ -131,27 +128,6 @@ ShFileSun sun_of(const JsonFields& fields) {
     return sun;
 }
 
-std::string read_all(int descriptor, std::size_t limit, const std::string& name) {
-    std::string text;
-    std::vector<char> block(std::size_t{1} << 16);
-    for (;;) {
-        const ssize_t got = read(descriptor, block.data(), block.size());
-        if (got < 0 && errno == EINTR) continue;
-        if (got < 0) {
-            throw Error(ErrorCode::io, "cannot be read: " + system_message(errno), name);
-        }
-        if (got == 0) return text;
-        text.append(block.data(), static_cast<std::size_t>(got));
-        if (text.size() > limit) {
-            throw Error(ErrorCode::memory,
-                        fmt::format("holds more than {}, which is what the limit on memory leaves "
-                                    "for a coefficient file (--max-memory)",
-                                    format_bytes(limit)),
-                        name);
-        }
-    }
-}
-
 }  // namespace
 
 ShFile parse_sh_file(const std::string& text, const std::string& name) {
@@ -190,10 +166,9 @@ ShFile parse_sh_file(const std::string& text, const std::string& name) {
 }
 
 ShFile read_sh_file(const std::string& path, std::size_t max_memory) {
-    const OpenInput input = open_input(path, "a coefficient file");
-    return parse_sh_file(
-        read_all(input.descriptor.get(), max_memory / (1 + kJsonTreeBytes), input.name),
-        input.name);
+    const std::string text =
+        read_text(path, "a coefficient file", max_memory / (1 + kJsonTreeBytes));
+    return parse_sh_file(text, path == "-" ? "standard input" : path);
 }
 
 bool is_json_file(const std::string& path) {

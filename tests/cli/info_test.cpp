@@ -104,6 +104,24 @@ TEST(Info, DescribesMeshes) {
     expect_failure({"info", directory / "a.obj", "--max-memory=100"}, 1, "--max-memory");
 }
 
+TEST(Info, DescribesScenes) {
+    const ScratchDirectory directory;
+    const std::string file = directory / "a.json";
+    const std::string media =
+        R"("media": [{"type": "gaussians", "blobs": [{"center": [0, 1, 0], "scale": 1, "amplitude": 2}]}])";
+    write_bytes(file, R"({"airlight_scene": 1, )" + media + "}");
+    const std::string text = run({"info", file}).out;
+    EXPECT_NE(text.find("800 x 600 pixels"), std::string::npos) << text;
+    EXPECT_NE(text.find("medium 0: gaussians"), std::string::npos) << text;
+    const nlohmann::json report = nlohmann::json::parse(run({"info", file, "--json"}).out);
+    EXPECT_EQ(report["files"][0]["format"], "airlight_scene");
+    EXPECT_EQ(report["files"][0]["media"][0]["blobs"], 1);
+    write_bytes(file, "{\"airlight_scene\": 1,\n\"light\": []}");
+    expect_failure({"info", file}, 1, file + ":2: the field light is unknown; is lights meant?");
+    const Outcome piped = run({"info", "-"}, "{\"airlight_scene\": 1,\n\"light\": []}");
+    EXPECT_NE(piped.err.find("standard input:2: the field light"), std::string::npos) << piped.err;
+}
+
 TEST(Info, ReportsNamesThatAreNoUtf8) {
     const ScratchDirectory directory;
     write_image(directory / "\xff.exr", make_map());
