@@ -121,8 +121,8 @@ void write(std::size_t size, const double* values, float* out) {
 
 // Both by-products are moments of V over the hemisphere: int V omega = sqrt(4 pi / 3) v_1, and its
 // component along the normal is pi times ambient occlusion.
-void write_moments(const glm::dvec3& normal, double rays, const double* sums, float* occlusion,
-                   float* bent) {
+void write_moments(const glm::dvec3& normal, bool dark, double rays, const double* sums,
+                   float* occlusion, float* bent) {
     const glm::dvec3 blocked = std::sqrt(4 * kPi / 3) * glm::dvec3(sums[3], sums[1], sums[2]);
     if (occlusion) {
         const double open = 1 - glm::dot(blocked, normal) / kPi;
@@ -132,7 +132,8 @@ void write_moments(const glm::dvec3& normal, double rays, const double* sums, fl
         glm::dvec3 free = kPi * normal - blocked;
         const double length = glm::length(free);
         // What is left of a hemisphere that is all blocked is the error of the rule.
-        free = length > 1e-2 * std::sqrt(2 * kPi / rays) ? free / length : normal;
+        const bool some = !dark && length > 1e-2 * std::sqrt(2 * kPi / rays);
+        free = some ? free / length : normal;
         for (int axis = 0; axis < 3; ++axis) bent[axis] = static_cast<float>(free[axis]);
     }
 }
@@ -150,6 +151,7 @@ BakeReport bake_block(const Plan& plan, const Mesh& mesh, const RayScene& scene,
     detail::BlockedSums sums(plan.sum_order, rows.transfer != nullptr, count);
     detail::ReflectedLight light(scene, reflectors, plan.order);
     const bool reflects = rows.transfer && light.any();
+    std::vector<bool> dark(count);
     std::vector<double> reflected(reflects ? size * count : 0);
     if (needs_rays(rows)) {
         report.rays = count * rays;
@@ -166,6 +168,7 @@ BakeReport bake_block(const Plan& plan, const Mesh& mesh, const RayScene& scene,
                 if (reflects) light.add(origin, frame, found, reflected.data() + size * k);
                 blocked += found.count;
             }
+            dark[k] = blocked == rays;
             report.blocked += blocked;
             report.mostly_blocked += 2 * blocked > rays ? 1 : 0;
         }
@@ -191,7 +194,7 @@ BakeReport bake_block(const Plan& plan, const Mesh& mesh, const RayScene& scene,
             write(size, row.data(), rows.transfer + k * size);
         }
         if (rows.ambient_occlusion || rows.bent_normal) {
-            write_moments(normal, static_cast<double>(rays), sums.of_basis(k),
+            write_moments(normal, dark[k], static_cast<double>(rays), sums.of_basis(k),
                           rows.ambient_occlusion ? rows.ambient_occlusion + k : nullptr,
                           rows.bent_normal ? rows.bent_normal + 3 * k : nullptr);
         }
