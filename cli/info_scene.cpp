@@ -50,28 +50,28 @@ std::string albedo(const glm::dvec3& a) {
 std::string describe(const SceneMedium& medium) {
     const std::string kind = std::visit(
         Overloaded{
-            [](const UniformMedium& m) {
+            [](const SceneUniform& m) {
                 return fmt::format("scattering {}, absorption {} per metre", colour(m.scattering),
                                    colour(m.absorption));
             },
-            [](const GaussiansMedium& m) {
+            [](const SceneGaussians& m) {
                 return fmt::format("{} blobs{}{}", m.blobs.size(),
                                    m.file.given() ? ", " + m.file.name : "", albedo(m.albedo));
             },
-            [](const ExponentialHeightMedium& m) {
+            [](const SceneExponentialHeight& m) {
                 return fmt::format("extinction {} per metre at y = 0, scale height {:g} m{}",
                                    colour(m.density), m.scale_height, albedo(m.albedo));
             },
-            [](const LinearHeightMedium& m) {
+            [](const SceneLinearHeight& m) {
                 return fmt::format("extinction {} per metre at y = 0, slope {}{}",
                                    colour(m.density), colour(m.slope), albedo(m.albedo));
             },
-            [](const AtmosphereMedium& m) {
+            [](const SceneAtmosphere& m) {
                 return fmt::format(
                     "extinction {} per metre at the ground, radius {:g} m, scale height {:g} m{}",
                     colour(m.density), m.radius, m.scale_height, albedo(m.albedo));
             },
-            [](const SlabMedium& m) {
+            [](const SceneSlab& m) {
                 return fmt::format("{}, index {:g}, scattering {}, absorption {} per metre",
                                    box(m.box), m.ior, colour(m.scattering), colour(m.absorption));
             }},
@@ -152,7 +152,7 @@ nlohmann::ordered_json to_json(const std::string& path, const Scene& scene) {
     json["media"] = nlohmann::ordered_json::array();
     for (const SceneMedium& medium : scene.media) {
         nlohmann::ordered_json entry = {{"type", medium_type(medium)}};
-        if (const auto* gaussians = std::get_if<GaussiansMedium>(&medium.kind)) {
+        if (const auto* gaussians = std::get_if<SceneGaussians>(&medium.kind)) {
             entry["blobs"] = gaussians->blobs.size();
         }
         entry["text"] = describe(medium);

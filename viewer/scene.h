@@ -66,27 +66,27 @@ struct SceneBox {
 };
 
 /// The same everywhere; coefficients [1/m], not negative.
-struct UniformMedium {
+struct SceneUniform {
     glm::dvec3 scattering{0}, absorption{0};
 };
 
 /// Sum of amplitude e^{-scale^2 |x - center|^2} [1/m] ([Zhou07] eq. 6), extinction; `albedo` is the
 /// part of it that scatters.
-struct GaussiansMedium {
+struct SceneGaussians {
     std::vector<GaussianBlob> blobs;  ///< those of the file come first
     SceneFile file;
     glm::dvec3 albedo{1};
 };
 
 /// Extinction density e^{-y / scale_height} [1/m].
-struct ExponentialHeightMedium {
+struct SceneExponentialHeight {
     glm::dvec3 density{0};
     double scale_height = 1;  ///< [m], not 0; negative for a medium that thickens upwards
     glm::dvec3 albedo{1};
 };
 
 /// Extinction max(0, density + slope y) [1/m].
-struct LinearHeightMedium {
+struct SceneLinearHeight {
     glm::dvec3 density{0};
     glm::dvec3 slope{0};  ///< [1/m^2]
     glm::dvec3 albedo{1};
@@ -94,7 +94,7 @@ struct LinearHeightMedium {
 
 /// Extinction density e^{-(|x - center| - radius) / scale_height} [1/m] around a planet, whose
 /// ground is not part of it.
-struct AtmosphereMedium {
+struct SceneAtmosphere {
     glm::dvec3 center{0};
     double radius = 0;  ///< [m], positive
     glm::dvec3 density{0};
@@ -103,15 +103,15 @@ struct AtmosphereMedium {
 };
 
 /// A box of a uniform medium behind surfaces that refract ([Slab]).
-struct SlabMedium {
+struct SceneSlab {
     SceneBox box;
     double ior = 1;  ///< index of refraction inside over that outside, 1 … 4
     glm::dvec3 scattering{0}, absorption{0};
 };
 
 struct SceneMedium {
-    std::variant<UniformMedium, GaussiansMedium, ExponentialHeightMedium, LinearHeightMedium,
-                 AtmosphereMedium, SlabMedium>
+    std::variant<SceneUniform, SceneGaussians, SceneExponentialHeight, SceneLinearHeight,
+                 SceneAtmosphere, SceneSlab>
         kind;
     ScenePhase phase;
     std::optional<SceneBox> bounds;  ///< outside it the medium is absent

@@ -180,8 +180,8 @@ class SceneReader {
         switch (fields.choice("type", {"uniform", "gaussians", "height", "atmosphere", "slab"})) {
             case 0:
                 fields.know({"type", "scattering", "absorption", "phase", "bounds"});
-                medium.kind = UniformMedium{coefficient_of(fields, "scattering"),
-                                            coefficient_of(fields, "absorption")};
+                medium.kind = SceneUniform{coefficient_of(fields, "scattering"),
+                                           coefficient_of(fields, "absorption")};
                 break;
             case 1:
                 medium.kind = gaussians_of(fields);
@@ -194,7 +194,7 @@ class SceneReader {
                 break;
             default:
                 fields.know({"type", "min", "max", "ior", "scattering", "absorption", "phase"});
-                medium.kind = SlabMedium{
+                medium.kind = SceneSlab{
                     box_of(fields), fields.has("ior") ? fields.number("ior", 1, 4) : 1,
                     coefficient_of(fields, "scattering"), coefficient_of(fields, "absorption")};
         }
@@ -207,9 +207,9 @@ class SceneReader {
         return medium;
     }
 
-    GaussiansMedium gaussians_of(const JsonFields& fields) const {
+    SceneGaussians gaussians_of(const JsonFields& fields) const {
         fields.know({"type", "blobs", "file", "albedo", "phase", "bounds"});
-        GaussiansMedium medium;
+        SceneGaussians medium;
         medium.albedo = albedo_of(fields);
         if (fields.has("file")) {
             medium.file = file_of(fields, "file");
@@ -232,7 +232,7 @@ class SceneReader {
         if (fields.choice("profile", {"exponential", "linear"}) == 0) {
             fields.know(
                 {"type", "profile", "density", "scale_height", "albedo", "phase", "bounds"});
-            ExponentialHeightMedium height;
+            SceneExponentialHeight height;
             height.density = colour_of(fields, "density", 0, kLargestSceneNumber);
             height.scale_height =
                 fields.number("scale_height", -kLargestSceneLength, kLargestSceneLength);
@@ -243,7 +243,7 @@ class SceneReader {
             medium.kind = height;
         } else {
             fields.know({"type", "profile", "density", "slope", "albedo", "phase", "bounds"});
-            LinearHeightMedium height;
+            SceneLinearHeight height;
             height.density =
                 colour_of(fields, "density", -kLargestSceneNumber, kLargestSceneNumber);
             height.slope = colour_of(fields, "slope", -kLargestSceneNumber, kLargestSceneNumber);
@@ -252,10 +252,10 @@ class SceneReader {
         }
     }
 
-    static AtmosphereMedium atmosphere_of(const JsonFields& fields) {
+    static SceneAtmosphere atmosphere_of(const JsonFields& fields) {
         fields.know(
             {"type", "center", "radius", "density", "scale_height", "albedo", "phase", "bounds"});
-        AtmosphereMedium atmosphere;
+        SceneAtmosphere atmosphere;
         atmosphere.radius = fields.number("radius", 1e-12, kLargestSceneLength);
         atmosphere.center = fields.has("center") ? point_of(fields, "center")
                                                  : glm::dvec3(0, -atmosphere.radius, 0);

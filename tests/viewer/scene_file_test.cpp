@@ -82,7 +82,7 @@ TEST_F(SceneFileTest, HoldsWhatTheFileSays) {
     EXPECT_EQ(scene.lights[1].intensity, glm::dvec3(3));
 
     ASSERT_EQ(scene.media.size(), 6u);
-    const auto& uniform = std::get<UniformMedium>(scene.media[0].kind);
+    const auto& uniform = std::get<SceneUniform>(scene.media[0].kind);
     EXPECT_EQ(uniform.scattering, glm::dvec3(0.1, 0.2, 0.3));
     EXPECT_EQ(uniform.absorption, glm::dvec3(0.01));
     EXPECT_EQ(scene.media[0].phase.type, PhaseType::henyey_greenstein);
@@ -90,7 +90,7 @@ TEST_F(SceneFileTest, HoldsWhatTheFileSays) {
     ASSERT_TRUE(scene.media[0].bounds);
     EXPECT_EQ(scene.media[0].bounds->min, glm::dvec3(-1, 0, -1));
     EXPECT_EQ(scene.media[0].bounds->max, glm::dvec3(1, 2, 1));
-    const auto& gaussians = std::get<GaussiansMedium>(scene.media[1].kind);
+    const auto& gaussians = std::get<SceneGaussians>(scene.media[1].kind);
     ASSERT_EQ(gaussians.blobs.size(), 3u);
     EXPECT_EQ(gaussians.blobs[0].center, glm::dvec3(1, 2, 3));
     EXPECT_EQ(gaussians.blobs[0].scale, 4);
@@ -99,19 +99,19 @@ TEST_F(SceneFileTest, HoldsWhatTheFileSays) {
     EXPECT_EQ(gaussians.blobs[2].scale, 1.5);
     EXPECT_EQ(gaussians.albedo, glm::dvec3(0.9));
     EXPECT_FALSE(scene.media[1].bounds);
-    const auto& height = std::get<ExponentialHeightMedium>(scene.media[2].kind);
+    const auto& height = std::get<SceneExponentialHeight>(scene.media[2].kind);
     EXPECT_EQ(height.density, glm::dvec3(0.05, 0.04, 0.03));
     EXPECT_EQ(height.scale_height, 8);
     EXPECT_EQ(height.albedo, glm::dvec3(1));
     EXPECT_EQ(scene.media[2].phase.type, PhaseType::rayleigh);
-    const auto& linear = std::get<LinearHeightMedium>(scene.media[3].kind);
+    const auto& linear = std::get<SceneLinearHeight>(scene.media[3].kind);
     EXPECT_EQ(linear.density, glm::dvec3(0.25));
     EXPECT_EQ(linear.slope, glm::dvec3(-0.125));
-    const auto& atmosphere = std::get<AtmosphereMedium>(scene.media[4].kind);
+    const auto& atmosphere = std::get<SceneAtmosphere>(scene.media[4].kind);
     EXPECT_EQ(atmosphere.center, glm::dvec3(0, -6371000, 0));
     EXPECT_EQ(atmosphere.scale_height, 8000);
     EXPECT_EQ(scene.media[4].phase.file.path, directory_ / "mie.csv");
-    const auto& slab = std::get<SlabMedium>(scene.media[5].kind);
+    const auto& slab = std::get<SceneSlab>(scene.media[5].kind);
     EXPECT_EQ(slab.box.max, glm::dvec3(1, 1, 1));
     EXPECT_EQ(slab.ior, 1.3);
     EXPECT_EQ(slab.absorption, glm::dvec3(1, 2, 3));
@@ -301,7 +301,7 @@ TEST_F(SceneFileTest, TakesManyBlobsAndLights) {
     text.back() = ']';
     const Scene scene = parse(text + "}]}");
     EXPECT_EQ(scene.lights.size(), 1000u);
-    EXPECT_EQ(std::get<GaussiansMedium>(scene.media[0].kind).blobs.size(), 100000u);
+    EXPECT_EQ(std::get<SceneGaussians>(scene.media[0].kind).blobs.size(), 100000u);
 }
 
 TEST_F(SceneFileTest, IsReadOrRefusedWhateverIsDamaged) {
