@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/scene_media.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <random>
+
+namespace airlight {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+SceneMedium medium_of(decltype(SceneMedium::kind) kind, std::optional<SceneBox> bounds = {}) {
+    SceneMedium medium;
+    medium.kind = std::move(kind);
+    medium.bounds = bounds;
+    return medium;
+}
+
+std::vector<SceneMedium> all_kinds() {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> number(-1, 1);
+    SceneGaussians few, many;
+    for (std::size_t i = 0; i < MediumPart::kFewBlobs + 40; ++i) {
+        const GaussianBlob blob = {{number(random), number(random), number(random)},
+                                   2 + number(random),
+                                   0.5 + 0.5 * number(random)};
+        if (i < 5) few.blobs.push_back(blob);
+        many.blobs.push_back(blob);
+    }
+    const SceneBox box = {{-0.5, -1, -0.5}, {1, 1, 2}};
+    return {medium_of(SceneUniform{{0.1, 0.2, 0.3}, {0.3, 0.2, 0}}),
+            medium_of(SceneUniform{{0.1, 0.2, 0.3}, {0, 0, 0}}, box),
+            medium_of(few),
+            medium_of(many, box),
+            medium_of(SceneExponentialHeight{{0.1, 0.2, 0.3}, 0.7}),
+            medium_of(SceneLinearHeight{{0.1, 0.2, 0.3}, {-0.3, -0.2, 0.1}}),
+            medium_of(SceneLinearHeight{{0.1, 0.2, 0.3}, {-0.3, -0.2, 0.1}}, box),
+            medium_of(SceneAtmosphere{{0, -3, 0}, 2, {1, 2, 3}, 0.5})};
+}
+
+TEST(SceneMedia, DepthsAreIntegralsOfDensities) {
+    std::vector<SceneMedium> media = all_kinds();
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> number(-2, 2);
+    for (int ray = 0; ray < 20; ++ray) {
+        const glm::dvec3 origin(number(random), number(random), number(random));
+        const glm::dvec3 direction =
+            glm::normalize(glm::dvec3(number(random), number(random), number(random)));
+        const double distance = std::abs(number(random)) * 2;
+        glm::dvec3 sum_of_all(0);
+        for (const SceneMedium& medium : media) {
+            const MediumPart part(medium);
+            glm::dvec3 sum(0);
+            constexpr int kSteps = 20000;
+            for (int i = 0; i < kSteps; ++i) {
+                sum += part.density(origin + (i + 0.5) / kSteps * distance * direction);
+            }
+            sum *= distance / kSteps;
+            const glm::dvec3 depth = part.depth(origin, direction, distance);
+            // The midpoint rule errs by half a step where a medium begins.
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(depth[c], sum[c], 5 * distance / kSteps) << medium_type(medium);
+            }
+            sum_of_all += depth;
+        }
+        const SceneMedia together(media);
+        const glm::dvec3 depth = together.depth(origin, direction, distance);
+        const glm::dvec3 left = together.transmittance(origin, direction, distance);
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_DOUBLE_EQ(depth[c], sum_of_all[c]);
+            EXPECT_DOUBLE_EQ(left[c], std::exp(-depth[c]));
+        }
+    }
+}
+
+TEST(SceneMedia, EndlessWaysHaveEndlessDepthsAndNoNan) {
+    const SceneMedium fog = medium_of(SceneUniform{{0.1, 0, 0.3}, {0, 0, 0}});
+    const glm::dvec3 depth = MediumPart(fog).depth({0, 0, 0}, {0, 1, 0}, kInfinite);
+    EXPECT_EQ(depth, glm::dvec3(kInfinite, 0, kInfinite));
+    EXPECT_EQ(SceneMedia({fog}).transmittance({0, 0, 0}, {0, 1, 0}, kInfinite),
+              glm::dvec3(0, 1, 0));
+    for (const SceneMedium& medium : all_kinds()) {
+        for (const glm::dvec3& direction : {glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0),
+                                            glm::dvec3(1, 0, 0), glm::dvec3(0, 0, -1)}) {
+            for (const double distance : {0.0, 1e-300, 1e300, kInfinite}) {
+                const glm::dvec3 all = MediumPart(medium).depth({0, 0, 0}, direction, distance);
+                for (int c = 0; c < 3; ++c) EXPECT_GE(all[c], 0) << medium_type(medium);
+            }
+        }
+    }
+    EXPECT_EQ(SceneMedia().depth({0, 0, 0}, {0, 1, 0}, kInfinite), glm::dvec3(0));
+}
+
+TEST(SceneMedia, AlbedosArePartsOfTheExtinction) {
+    const MediumPart part(medium_of(SceneUniform{{0.1, 0.2, 0}, {0.3, 0, 0}}));
+    EXPECT_DOUBLE_EQ(part.albedo().x, 0.25);
+    EXPECT_EQ(part.albedo().y, 1);
+    EXPECT_EQ(part.albedo().z, 0);
+}
+
+TEST(SceneMedia, BordersLieWhereBoxesBeginAndEnd) {
+    const SceneMedia media({medium_of(SceneUniform{}, SceneBox{{1, -1, -1}, {2, 1, 1}}),
+                            medium_of(SceneUniform{}, SceneBox{{-1, -1, -1}, {1.5, 1, 1}}),
+                            medium_of(SceneUniform{}, SceneBox{{1, 2, -1}, {2, 3, 1}})});
+    EXPECT_EQ(media.borders({0, 0, 0}, {1, 0, 0}, 10), (std::vector<double>{1, 1.5, 2}));
+    EXPECT_EQ(media.borders({0, 0, 0}, {1, 0, 0}, 1.75), (std::vector<double>{1, 1.5}));
+    EXPECT_EQ(media.borders({0, 0, 0}, {-1, 0, 0}, 10), (std::vector<double>{1}));
+    EXPECT_EQ(media.borders({0, 5, 0}, {1, 0, 0}, 10), (std::vector<double>{}));
+}
+
+TEST(ClipToBox, RaysAlongFacesAreInside) {
+    const SceneBox box = {{0, 0, 0}, {1, 1, 1}};
+    const auto span = clip_to_box(box, {-1, 0, 0.5}, {1, 0, 0}, kInfinite);
+    ASSERT_TRUE(span);
+    EXPECT_EQ(span->near, 1);
+    EXPECT_EQ(span->far, 2);
+    EXPECT_FALSE(clip_to_box(box, {-1, -1e-9, 0.5}, {1, 0, 0}, kInfinite));
+    EXPECT_FALSE(clip_to_box(box, {-1, 0.5, 0.5}, {1, 0, 0}, 1));
+    EXPECT_FALSE(clip_to_box(box, {-1, 0.5, 0.5}, {-1, -0.0, 0}, kInfinite));
+    EXPECT_TRUE(clip_to_box(box, {0.5, 0.5, 0.5}, {1e-300, 1, 0}, kInfinite));
+}
+
+}  // namespace
+}  // namespace airlight

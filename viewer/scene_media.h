@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// The media of a scene, made ready for rays.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "medium/density_field.h"
+#include "medium/gaussian_tree.h"
+#include "viewer/scene.h"
+
+namespace airlight {
+
+/// Where a ray is inside a box: distances, near >= 0. Nothing where it misses the box or only
+/// touches it. Any direction but 0; a ray within a face is inside.
+struct RaySpan {
+    double near = 0, far = 0;
+};
+std::optional<RaySpan> clip_to_box(const SceneBox& box, const glm::dvec3& origin,
+                                   const glm::dvec3& direction, double distance);
+
+/// One medium: extinction density_c(x) [1/m] in channel c, of which the part albedo_c scatters.
+class MediumPart {
+  public:
+    /// Any medium but a slab, whose surfaces make it another thing.
+    explicit MediumPart(const SceneMedium& medium);
+
+    const glm::dvec3& albedo() const { return albedo_; }
+    const ScenePhase& phase() const { return phase_; }
+    const std::optional<SceneBox>& bounds() const { return bounds_; }
+
+    /// Extinction [1/m] at a point; 0 outside the bounds.
+    glm::dvec3 density(const glm::dvec3& x) const;
+
+    /// Optical depth along `distance` in [0, inf] of a unit direction, not negative, +inf where
+    /// the medium is without end. The closed forms of medium/density_field.h. Of more than
+    /// kFewBlobs Gaussians those are left out whose depths add up to kTreeDepth at most.
+    glm::dvec3 depth(const glm::dvec3& origin, const glm::dvec3& direction, double distance) const;
+
+    static constexpr std::size_t kFewBlobs = 32;
+    static constexpr double kTreeDepth = 1e-9;
+
+  private:
+    /// of_shape(shape) for each channel, once where all have the same.
+    template <class OfShape>
+    glm::dvec3 by_channel(const OfShape& of_shape) const;
+
+    /// One for all channels, scaled by colour_, or one for each.
+    std::vector<DensityField> shapes_;
+    std::shared_ptr<const GaussianTree> tree_;  ///< in place of a shape, for many Gaussians
+    glm::dvec3 colour_{1}, albedo_{1};
+    ScenePhase phase_;
+    std::optional<SceneBox> bounds_;
+};
+
+/// All media but slabs; what they do adds up.
+class SceneMedia {
+  public:
+    SceneMedia() = default;
+    explicit SceneMedia(const std::vector<SceneMedium>& media);
+
+    bool empty() const { return parts_.empty(); }
+    const std::vector<MediumPart>& parts() const { return parts_; }
+
+    glm::dvec3 density(const glm::dvec3& x) const;
+    glm::dvec3 depth(const glm::dvec3& origin, const glm::dvec3& direction, double distance) const;
+    /// e^{-depth}.
+    glm::dvec3 transmittance(const glm::dvec3& origin, const glm::dvec3& direction,
+                             double distance) const;
+
+    /// Distances within (0, distance) at which a medium begins or ends, ascending.
+    std::vector<double> borders(const glm::dvec3& origin, const glm::dvec3& direction,
+                                double distance) const;
+
+  private:
+    std::vector<MediumPart> parts_;
+};
+
+}  // namespace airlight
