@@ -50,6 +50,7 @@ Command declare_sh(CLI::App& program);
 Command declare_export(CLI::App& program);
 Command declare_brdf(CLI::App& program);
 Command declare_bake(CLI::App& program);
+Command declare_merge(CLI::App& program);
 
 /// Writes to standard output. Throws Error(io) when it is closed, full or a broken pipe.
 void print(const std::string& text);

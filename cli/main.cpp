@@ -11,6 +11,7 @@
 
 #include "cli/command.h"
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "core/log.h"
 #include "core/threads.h"
 
@@ -100,11 +101,12 @@ int run(int argc, char** argv) {
         "  airlight sheet room.exr foggy.exr -o sheet.png\n"
         "  airlight eval psf < points.csv\n"
         "airlight COMMAND --help tells more. Exit status: 0 done, 1 the data or the machine\n"
-        "failed, 2 wrong usage.");
-    const std::vector<Command> commands = {
-        declare_fog(program),    declare_info(program),   declare_eval(program),
-        declare_sheet(program),  declare_ladder(program), declare_sh(program),
-        declare_export(program), declare_brdf(program),   declare_bake(program)};
+        "failed, 2 wrong usage; 128 and the signal's number: interrupted.");
+    const std::vector<Command> commands = {declare_fog(program),    declare_info(program),
+                                           declare_eval(program),   declare_sheet(program),
+                                           declare_ladder(program), declare_sh(program),
+                                           declare_export(program), declare_brdf(program),
+                                           declare_bake(program),   declare_merge(program)};
     const Command* command = nullptr;
     try {
         command = parse(program, commands, argc, argv);
@@ -141,6 +143,9 @@ int main(int argc, char** argv) {
     } catch (const airlight::Error& error) {
         spdlog::error("{}", error.describe());
         return error.code() == airlight::ErrorCode::usage ? 2 : 1;
+    } catch (const airlight::Interrupted& interrupted) {
+        spdlog::warn("{}", interrupted.what());
+        airlight::end_by_signal(interrupted.signal());
     } catch (const std::bad_alloc&) {
         spdlog::error("not enough memory for this work (see --max-memory)");
     } catch (const std::exception& error) {

@@ -13,64 +13,12 @@
 
 #include "core/descriptor.h"
 #include "core/error.h"
+#include "core/target.h"
 
 namespace airlight {
 namespace {
 
 constexpr int kNameAttempts = 100;
-constexpr const char* kExists = "already exists (use --force to replace it)";
-
-struct Place {
-    std::string resolved;
-    std::string directory;
-    bool exists = false;
-    mode_t mode = 0;
-};
-
-// Looks at the target and its directory; throws for all that is known to fail.
-Place inspect(const std::string& target, bool force) {
-    if (target.empty()) throw Error(ErrorCode::io, "the output path is empty");
-    Place place;
-    place.resolved = target;
-    struct stat status = {};
-    if (lstat(target.c_str(), &status) == 0 && S_ISLNK(status.st_mode)) {
-        std::error_code error;
-        place.resolved = std::filesystem::canonical(target, error).string();
-        if (error) {
-            throw Error(ErrorCode::io, "is a symbolic link that leads nowhere", target);
-        }
-    }
-    const std::filesystem::path parent = std::filesystem::path(place.resolved).parent_path();
-    place.directory = parent.empty() ? "." : parent.string();
-    if (stat(place.resolved.c_str(), &status) == 0) {
-        if (S_ISDIR(status.st_mode)) throw Error(ErrorCode::io, "is a directory", target);
-        if (!S_ISREG(status.st_mode)) {
-            throw Error(ErrorCode::io, "is not a regular file (use - for standard output)", target);
-        }
-        if (!force) throw Error(ErrorCode::io, kExists, target);
-        place.exists = true;
-        place.mode = status.st_mode & 07777;
-    }
-    if (stat(place.directory.c_str(), &status) != 0) {
-        const int error = errno;
-        throw Error(ErrorCode::io,
-                    error == ENOENT ? "the directory " + place.directory + " does not exist"
-                    : error == ENOTDIR
-                        ? place.directory + " is not a directory"
-                        : "cannot look into " + place.directory + ": " + system_message(error),
-                    target);
-    }
-    if (!S_ISDIR(status.st_mode)) {
-        throw Error(ErrorCode::io, place.directory + " is not a directory", target);
-    }
-    if (place.resolved.back() == '/') throw Error(ErrorCode::io, "is no file name", target);
-    if (access(place.directory.c_str(), W_OK | X_OK) != 0) {
-        throw Error(ErrorCode::io,
-                    "cannot create a file in " + place.directory + ": " + system_message(errno),
-                    target);
-    }
-    return place;
-}
 
 std::string hidden_name(const std::string& directory) {
     static constexpr char kLetters[] = "abcdefghijklmnopqrstuvwxyz0123456789";
@@ -81,20 +29,6 @@ std::string hidden_name(const std::string& directory) {
     return name;
 }
 
-// Moves one name onto another, which without `force` must not exist. Returns 0 or an errno value.
-int move_name(const std::string& from, const std::string& to, bool force) {
-#ifdef RENAME_NOREPLACE
-    if (!force) {
-        if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0)
-            return 0;
-        // Some file systems know only the plain form.
-        if (errno != EINVAL && errno != ENOSYS) return errno;
-    }
-#endif
-    if (!force && access(to.c_str(), F_OK) == 0) return EEXIST;
-    return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
-}
-
 }  // namespace
 
 std::string system_message(int error_number) {
@@ -102,12 +36,12 @@ std::string system_message(int error_number) {
 }
 
 void check_target(const std::string& target, bool force) {
-    inspect(target, force);
+    detail::inspect_target(target, force);
 }
 
 AtomicFile::AtomicFile(std::string target, const AtomicFileOptions& options)
     : target_(std::move(target)), force_(options.force) {
-    const Place place = inspect(target_, force_);
+    const detail::Target place = detail::inspect_target(target_, force_);
     resolved_ = place.resolved;
     directory_ = place.directory;
     open_unfinished(options.unnamed);
@@ -161,19 +95,20 @@ void AtomicFile::publish() {
     if (!named_) {
         const std::string name = force_ ? hidden_name(directory_) : resolved_;
         if (linkat(AT_FDCWD, path_.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) {
-            throw Error(
-                ErrorCode::io,
-                errno == EEXIST ? kExists : "cannot be put in place: " + system_message(errno),
-                target_);
+            throw Error(ErrorCode::io,
+                        errno == EEXIST ? detail::kTargetExists
+                                        : "cannot be put in place: " + system_message(errno),
+                        target_);
         }
         if (!force_) return;
         path_ = name;
         named_ = true;
     }
 #endif
-    if (const int error = move_name(path_, resolved_, force_); error != 0) {
+    if (const int error = detail::move_name(path_, resolved_, force_); error != 0) {
         throw Error(ErrorCode::io,
-                    error == EEXIST ? kExists : "cannot be put in place: " + system_message(error),
+                    error == EEXIST ? detail::kTargetExists
+                                    : "cannot be put in place: " + system_message(error),
                     target_);
     }
     named_ = false;
@@ -185,17 +120,7 @@ void AtomicFile::commit() {
     }
     publish();
     abandon();
-    // The new file is in place; what remains makes its name outlive a power cut. Some network file
-    // systems cannot sync a directory and say EINVAL.
-    const int directory = open(directory_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (directory < 0) return;
-    const int error = fsync(directory) == 0 ? 0 : errno;
-    close(directory);
-    if (error != 0 && error != EINVAL) {
-        throw Error(ErrorCode::io,
-                    "was written but may not outlive a power cut: " + system_message(error),
-                    target_);
-    }
+    detail::sync_directory(directory_, target_);
 }
 
 void AtomicFile::abandon() {

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "core/interrupt.h"
+
 namespace airlight {
 namespace {
 
@@ -32,6 +34,9 @@ Progress::Progress(std::string label, std::uint64_t total, const ProgressOptions
       total_(total),
       descriptor_(options.descriptor),
       visible_(!options.quiet && total > 0 && is_drawable(options.descriptor)),
+      interruptible_(options.interruptible),
+      before_(options.before),
+      done_(options.before),
       next_draw_(kBetweenDraws.count()) {}
 
 Progress::~Progress() {
@@ -39,6 +44,7 @@ Progress::~Progress() {
 }
 
 void Progress::tick(std::uint64_t steps) {
+    if (interruptible_) throw_if_interrupted();
     const std::uint64_t done = done_.fetch_add(steps, std::memory_order_relaxed) + steps;
     if (!visible_) return;
     const Clock::time_point now = Clock::now();
@@ -55,7 +61,9 @@ void Progress::draw(Clock::time_point now, std::uint64_t done) {
     const std::lock_guard<std::mutex> lock(drawing_);
     const double fraction = std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
     const double elapsed = std::chrono::duration<double>(now - start_).count();
-    const auto left = static_cast<long long>(elapsed * (1 - fraction) / fraction + 0.5);
+    const double rate = static_cast<double>(done - before_) / elapsed;
+    const double to_do = static_cast<double>(std::max(total_, done) - done);
+    const auto left = static_cast<long long>(to_do / std::max(rate, 1e-9) + 0.5);
     const int filled = static_cast<int>(fraction * kBarWidth);
     put(descriptor_,
         fmt::format("{}{} [{:#<{}}{:.<{}}] {:3.0f} %  {}:{:02} left", kEraseLine, label_, "",

@@ -13,13 +13,16 @@ namespace airlight {
 struct ProgressOptions {
     bool quiet = false;
     int descriptor = 2;  ///< where it draws, only if that is a terminal
+    /// Ticks of the total that an earlier process did; the time left does not count on them.
+    std::uint64_t before = 0;
+    bool interruptible = false;  ///< tick() throws Interrupted after a signal (core/interrupt.h)
 };
 
 /// "fog [#####.......]  42 %  0:07 left": drawn at most ten times a second, and erased by the
 /// destructor. Away from a terminal it draws nothing.
 class Progress {
   public:
-    /// `total` is the number of ticks to come; 0 draws nothing.
+    /// `total` is the number of ticks in all; 0 draws nothing.
     Progress(std::string label, std::uint64_t total, const ProgressOptions& options = {});
     ~Progress();
     Progress(const Progress&) = delete;
@@ -40,8 +43,10 @@ class Progress {
     const std::uint64_t total_;
     const int descriptor_;
     const bool visible_;
+    const bool interruptible_;
+    const std::uint64_t before_;
     const Clock::time_point start_ = Clock::now();
-    std::atomic<std::uint64_t> done_{0};
+    std::atomic<std::uint64_t> done_;
     std::atomic<std::int64_t> next_draw_{0};  ///< nanoseconds after start_
     std::mutex drawing_;
     bool drawn_ = false;

@@ -65,8 +65,9 @@ void check_reflectors(const std::vector<Reflector>& reflectors) {
 
 // Directions that are traced at a time: their arrays stay in the cache.
 constexpr std::size_t kDirections = detail::BlockedSums::kMostSamples;
-// Vertices of a task: tens of milliseconds.
+// Vertices of a task, and rays where these are many: tens of milliseconds.
 constexpr std::size_t kVertices = 128;
+constexpr std::size_t kTaskRays = std::size_t{1} << 17;
 
 // What all vertices share.
 struct Plan {
@@ -169,10 +170,16 @@ BakeReport bake_block(const Plan& plan, const Mesh& mesh, const RayScene& scene,
                 blocked += found.count;
             }
             dark[k] = blocked == rays;
+            if (rows.blocked_count) rows.blocked_count[k] = static_cast<std::uint32_t>(blocked);
             report.blocked += blocked;
             report.mostly_blocked += 2 * blocked > rays ? 1 : 0;
         }
         sums.finish();
+    } else if (rows.blocked_count) {
+        std::fill_n(rows.blocked_count, count, 0u);
+    }
+    if (rows.ray_count) {
+        std::fill_n(rows.ray_count, count, static_cast<std::uint32_t>(report.rays / count));
     }
     std::vector<double> row(sh_count(plan.sum_order));
     for (std::size_t k = 0; k < count; ++k) {
@@ -212,12 +219,13 @@ void add(BakeReport& sum, const BakeReport& part) {
 }  // namespace
 
 BakeRows BakeRows::from(std::size_t row, int order) const {
-    const auto at = [&](float* rows, std::size_t width) {
+    const auto at = [&](auto* rows, std::size_t width) {
         return rows ? rows + row * width : nullptr;
     };
     const std::size_t size = sh_count(order);
-    return {at(visibility, size), at(transfer, size), at(unshadowed_transfer, size),
-            at(ambient_occlusion, 1), at(bent_normal, 3)};
+    return {at(visibility, size),     at(transfer, size), at(unshadowed_transfer, size),
+            at(ambient_occlusion, 1), at(bent_normal, 3), at(ray_count, 1),
+            at(blocked_count, 1)};
 }
 
 BakeReport bake_vertices(const Mesh& mesh, const RayScene& scene, const BakeOptions& options,
@@ -233,15 +241,21 @@ BakeReport bake_vertices(const Mesh& mesh, const RayScene& scene, const BakeOpti
         if (progress) progress->tick(end - begin);
         return report;
     };
-    return ordered_reduce(count, kVertices, BakeReport(), bake_some, add);
+    const std::size_t grain = std::clamp<std::size_t>(kTaskRays / plan.local.count(), 1, kVertices);
+    return ordered_reduce(count, grain, BakeReport(), bake_some, add);
 }
 
 BakeRows Bake::rows() {
     const auto at = [](std::vector<float>& values) {
         return values.empty() ? nullptr : values.data();
     };
-    return {at(visibility), at(transfer), at(unshadowed_transfer), at(ambient_occlusion),
-            at(bent_normal)};
+    return {at(visibility),
+            at(transfer),
+            at(unshadowed_transfer),
+            at(ambient_occlusion),
+            at(bent_normal),
+            nullptr,
+            nullptr};
 }
 
 Bake bake_mesh(const Mesh& mesh, const RayScene& scene, const BakeOptions& options,

@@ -66,6 +66,8 @@ struct BakeRows {
     float* ambient_occlusion = nullptr;    ///< (vertices), in [0, 1]
     /// (vertices, 3), unit; the normal where no direction is free, or free ones cancel.
     float* bent_normal = nullptr;
+    std::uint32_t* ray_count = nullptr;      ///< (vertices): rays that were asked for
+    std::uint32_t* blocked_count = nullptr;  ///< (vertices): of these
 
     /// The rows from `row` on.
     BakeRows from(std::size_t row, int order) const;

@@ -38,7 +38,7 @@ void check_start(const PrtInput& input, const std::string& bytes) {
     if (bytes.compare(0, kPrtMagic.size(), kPrtMagic.substr(0, bytes.size())) != 0) {
         input.refuse("is no .prt file");
     }
-    if (input.size < kFixedHeader + kTableBytes + kChecksumBytes + kTrailerBytes) {
+    if (input.size < kFixedHeader + kTableBytes + kChecksumBytes) {
         input.refuse(
             fmt::format("is cut off: it has {} bytes, less than any .prt file", input.size));
     }
@@ -51,46 +51,6 @@ void check_start(const PrtInput& input, const std::string& bytes) {
         input.refuse(fmt::format("follows the convention {}, and only {} is known", convention,
                                  kPrtConvention));
     }
-}
-
-PrtHeader read_header(const PrtInput& input) {
-    const std::string start = read_part(input, 0, std::min(input.size, kFixedHeader));
-    check_start(input, start);
-    const auto tables =
-        static_cast<std::size_t>(load_unsigned(start.data() + kTableCountAt, 4, false));
-    if (tables > kMostTables) {
-        input.refuse(fmt::format("has {} tables, and there can be 1 to {}", tables, kMostTables));
-    }
-    const std::size_t whole = kFixedHeader + tables * kTableBytes + kChecksumBytes;
-    if (input.size < whole) input.refuse("is cut off in its header");
-    const std::string bytes = read_section(input, 0, whole, "header");
-    Cursor cursor(bytes.data() + kPrtMagic.size() + 8);
-    PrtHeader header;
-    cursor.key(header.key);
-    cursor.key(header.mesh);
-    header.mesh_vertices = cursor.u64();
-    header.first_row = cursor.u64();
-    header.rows = cursor.u64();
-    header.shard = cursor.u32();
-    header.shards = cursor.u32();
-    header.rays = cursor.u64();
-    header.tolerance = cursor.real();
-    const std::uint32_t order = cursor.u32();
-    if (order > kLargestPrtOrder) {
-        input.refuse(
-            fmt::format("has the order {}, and it must be in [1, {}]", order, kLargestPrtOrder));
-    }
-    header.order = static_cast<int>(order);
-    header.block_rows = cursor.u32();
-    cursor.u32();
-    if (cursor.u32() != 0) input.refuse("has a reserved field of its header that is not 0");
-    for (std::size_t t = 0; t < tables; ++t) {
-        const auto kind = static_cast<PrtKind>(cursor.u32());
-        header.tables.push_back({kind, static_cast<PrtType>(cursor.u32())});
-    }
-    const std::string fault = find_fault(header);
-    if (!fault.empty()) input.refuse(fault);
-    return header;
 }
 
 std::string read_report(const PrtInput& input, std::size_t offset, std::size_t bytes) {
@@ -156,8 +116,54 @@ void PrtInput::read(std::size_t offset, std::string& bytes) const {
     }
 }
 
-PrtContents read_contents(const PrtInput& input) {
+PrtHeader read_header(const PrtInput& input) {
     if (input.size == 0) input.refuse("is empty");
+    const std::string start = read_part(input, 0, std::min(input.size, kFixedHeader));
+    check_start(input, start);
+    const auto tables =
+        static_cast<std::size_t>(load_unsigned(start.data() + kTableCountAt, 4, false));
+    if (tables > kMostTables) {
+        input.refuse(fmt::format("has {} tables, and there can be 1 to {}", tables, kMostTables));
+    }
+    const std::size_t whole = kFixedHeader + tables * kTableBytes + kChecksumBytes;
+    if (input.size < whole) input.refuse("is cut off in its header");
+    const std::string bytes = read_section(input, 0, whole, "header");
+    Cursor cursor(bytes.data() + kPrtMagic.size() + 8);
+    PrtHeader header;
+    cursor.key(header.key);
+    cursor.key(header.mesh);
+    header.mesh_vertices = cursor.u64();
+    header.first_row = cursor.u64();
+    header.rows = cursor.u64();
+    header.shard = cursor.u32();
+    header.shards = cursor.u32();
+    header.rays = cursor.u64();
+    header.tolerance = cursor.real();
+    const std::uint32_t order = cursor.u32();
+    if (order > kLargestPrtOrder) {
+        input.refuse(
+            fmt::format("has the order {}, and it must be in [1, {}]", order, kLargestPrtOrder));
+    }
+    header.order = static_cast<int>(order);
+    header.block_rows = cursor.u32();
+    cursor.u32();
+    if (cursor.u32() != 0) input.refuse("has a reserved field of its header that is not 0");
+    for (std::size_t t = 0; t < tables; ++t) {
+        const auto kind = static_cast<PrtKind>(cursor.u32());
+        header.tables.push_back({kind, static_cast<PrtType>(cursor.u32())});
+    }
+    const std::string fault = find_fault(header);
+    if (!fault.empty()) input.refuse(fault);
+    return header;
+}
+
+bool has_end(const PrtInput& input) {
+    if (input.size < kTrailerBytes) return false;
+    const std::string trailer = read_part(input, input.size - kTrailerBytes, kTrailerBytes);
+    return std::string_view(trailer).substr(16, kPrtEnd.size()) == kPrtEnd;
+}
+
+PrtContents read_contents(const PrtInput& input) {
     PrtContents contents;
     contents.header = read_header(input);
     const PrtLayout layout(contents.header);

@@ -62,6 +62,12 @@ struct PrtContents {
     std::uint64_t fingerprint = 0;
 };
 
+/// Reads the header of a file, finished or not, and checks it; throws as PrtReader does.
+PrtHeader read_header(const PrtInput& input);
+
+/// Whether the last bytes are those that every finished file ends with.
+bool has_end(const PrtInput& input);
+
 /// Reads header, report and index, and checks them; throws as PrtReader does.
 PrtContents read_contents(const PrtInput& input);
 

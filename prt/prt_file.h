@@ -36,6 +36,7 @@ enum class PrtKind : std::uint32_t {
     ray_count = 7,            ///< 1: rays that were traced for the row; uint32
     vertex_index = 8,         ///< 1: the vertex of the mesh that the row is of; uint32
     unshadowed_transfer = 9,  ///< n^2 coefficients: transfer with V = 1
+    blocked_count = 10,       ///< 1: rays of the row that something hides; uint32
 };
 
 inline constexpr NamedMethod<PrtKind> kPrtKinds[] = {
@@ -48,13 +49,14 @@ inline constexpr NamedMethod<PrtKind> kPrtKinds[] = {
     {PrtKind::ray_count, "ray_count"},
     {PrtKind::vertex_index, "vertex_index"},
     {PrtKind::unshadowed_transfer, "unshadowed_transfer"},
+    {PrtKind::blocked_count, "blocked_count"},
 };
 
 /// How a table's numbers are stored.
 enum class PrtType : std::uint32_t {
     float32 = 1,
     float16 = 2,  ///< IEEE binary16, rounded to nearest even: relative 2^-11, absolute 2^-25
-    uint32 = 3,   ///< ray_count and vertex_index, and only they
+    uint32 = 3,   ///< ray_count, vertex_index and blocked_count, and only they
 };
 
 inline constexpr NamedMethod<PrtType> kPrtTypes[] = {

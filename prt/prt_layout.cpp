@@ -63,7 +63,8 @@ std::string find_fault(const PrtHeader& h) {
             return fmt::format("stores {} as type {}, which is unknown", prt_name(kind),
                                static_cast<std::uint32_t>(type));
         }
-        const bool counts = kind == PrtKind::ray_count || kind == PrtKind::vertex_index;
+        const bool counts = kind == PrtKind::ray_count || kind == PrtKind::vertex_index ||
+                            kind == PrtKind::blocked_count;
         if (counts != (type == PrtType::uint32)) {
             return fmt::format("stores {} as {}, and only {} will do", prt_name(kind),
                                prt_name(type), counts ? "uint32" : "float32 or float16");

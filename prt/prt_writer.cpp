@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "prt/prt_layout.h"
+#include "prt/prt_prefix.h"
 #include "prt/prt_values.h"
 
 namespace airlight {
@@ -51,7 +54,10 @@ bool is_object(const std::string& text) {
 struct PrtWriter::State {
     PrtHeader header;
     detail::PrtLayout layout{header};
-    AtomicFile file;
+    std::optional<AtomicFile> file;
+    WorkFile* work = nullptr;  ///< instead of a file that appears whole
+    const std::string name;
+    bool damaged = false;
     /// Rows that wait for their block to be full, of every table.
     std::vector<std::vector<float>> values;
     std::vector<std::vector<std::uint32_t>> integers;
@@ -62,20 +68,65 @@ struct PrtWriter::State {
     std::string chunk;
 
     State(const std::string& path, const PrtHeader& given, bool force)
-        : header(complete(given, path)), file(path, AtomicFileOptions{force}) {
-        values.resize(header.tables.size());
-        integers.resize(header.tables.size());
-        figures.resize(header.tables.size());
+        : header(complete(given, path)), name(path) {
+        file.emplace(path, AtomicFileOptions{force});
+        resize();
         write(detail::header_bytes(header));
+    }
+    State(WorkFile& given_work, const PrtHeader& given, bool discard_other)
+        : header(complete(given, given_work.path())), work(&given_work), name(work->path()) {
+        resize();
+        go_on(discard_other);
     }
     State(const State&) = delete;
     State& operator=(const State&) = delete;
 
-    [[noreturn]] void refuse(ErrorCode code, const std::string& message) const {
-        throw Error(code, message, file.target());
+    void resize() {
+        values.resize(header.tables.size());
+        integers.resize(header.tables.size());
+        figures.resize(header.tables.size());
     }
 
-    void write(const std::string& bytes) { file.write(bytes.data(), bytes.size()); }
+    // Takes over the whole blocks of a work file that begins with the same header.
+    void go_on(bool discard_other) {
+        const std::string wanted = detail::header_bytes(header);
+        std::string there(std::min(wanted.size(), work->size()), '\0');
+        read_at(work->descriptor(), there.data(), there.size(), 0, name);
+        if (there != wanted) {
+            // A power cut may leave a part of the header, or zeros.
+            const bool begun = there.size() < wanted.size() &&
+                               (wanted.compare(0, there.size(), there) == 0 ||
+                                there.find_first_not_of('\0') == std::string::npos);
+            if (!begun && !discard_other) {
+                refuse(ErrorCode::io,
+                       "holds an unfinished bake of another mesh or with other options (--force "
+                       "discards it)");
+            }
+            work->cut(0);
+            write(wanted);
+            work->sync();
+            return;
+        }
+        const detail::PrtInput input{work->descriptor(), work->size(), name, SIZE_MAX};
+        detail::PrtPrefix prefix = detail::read_prefix(input, header);
+        work->cut(prefix.bytes);
+        written = prefix.rows;
+        damaged = prefix.damaged;
+        figures = std::move(prefix.figures);
+        checksums = std::move(prefix.checksums);
+    }
+
+    [[noreturn]] void refuse(ErrorCode code, const std::string& message) const {
+        throw Error(code, message, name);
+    }
+
+    void write(const std::string& bytes) {
+        if (work != nullptr) {
+            work->append(bytes.data(), bytes.size());
+        } else {
+            file->write(bytes.data(), bytes.size());
+        }
+    }
 
     bool is_integer(std::size_t table) const {
         return header.tables[table].type == PrtType::uint32;
@@ -141,6 +192,7 @@ struct PrtWriter::State {
     void write_block(const std::vector<PrtColumn>& columns, std::size_t rows) {
         for (std::size_t t = 0; t < columns.size(); ++t) write_chunk(t, columns[t], rows);
         written += rows;
+        if (work != nullptr) work->keep();
     }
 
     void write_waiting() {
@@ -181,7 +233,18 @@ struct PrtWriter::State {
 PrtWriter::PrtWriter(const std::string& path, const PrtHeader& header, bool force)
     : state_(std::make_unique<State>(path, header, force)) {}
 
+PrtWriter::PrtWriter(WorkFile& work, const PrtHeader& header, bool discard_other)
+    : state_(std::make_unique<State>(work, header, discard_other)) {}
+
 PrtWriter::~PrtWriter() = default;
+
+std::uint64_t PrtWriter::rows() const {
+    return state_->written;
+}
+
+bool PrtWriter::damaged() const {
+    return state_->damaged;
+}
 
 const PrtHeader& PrtWriter::header() const {
     return state_->header;
@@ -244,7 +307,11 @@ void PrtWriter::finish(const std::string& report) {
     bytes += detail::kPrtEnd;
     detail::append_checksum(bytes, trailer);
     s.write(bytes);
-    s.file.commit();
+    if (s.work != nullptr) {
+        s.work->sync();
+    } else {
+        s.file->commit();
+    }
 }
 
 }  // namespace airlight

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/work_file.h"
 #include "prt/prt_file.h"
 
 namespace airlight {
@@ -40,12 +41,22 @@ class PrtWriter {
   public:
     /// The rows need not be known yet, the header must be.
     PrtWriter(const std::string& path, const PrtHeader& header, bool force = false);
+    /// Writes into a work file, and goes on behind the whole blocks of rows that it holds already,
+    /// up to the first that is not right. finish() makes a whole .prt file of it, which its owner
+    /// publishes or removes. A work file that begins with another header is an Error(io), or is
+    /// emptied if `discard_other`.
+    PrtWriter(WorkFile& work, const PrtHeader& header, bool discard_other = false);
     ~PrtWriter();
     PrtWriter(const PrtWriter&) = delete;
     PrtWriter& operator=(const PrtWriter&) = delete;
 
     /// The header with block_rows as it was chosen.
     const PrtHeader& header() const;
+
+    /// Rows that are in the file: whole blocks, those that a work file held included.
+    std::uint64_t rows() const;
+    /// Whether a work file held a block that was not right; it was cut off there.
+    bool damaged() const;
 
     /// Adds the next `rows` rows of all tables, in the order of header().tables.
     void append(std::size_t rows, const std::vector<PrtColumn>& columns);
