@@ -24,6 +24,20 @@ std::string kind_names() {
     return names;
 }
 
+std::vector<std::string> bake_methods() {
+    return method_names(kBakeMethods, BakeMethod::fibonacci);
+}
+
+BakeMethod parse_method(const std::string& text) {
+    const auto method = method_from_name(kBakeMethods, text);
+    if (!method) {
+        throw Error(ErrorCode::usage,
+                    "'" + text + "' is no method; it can be " + list_choices(bake_methods()),
+                    "--method");
+    }
+    return *method;
+}
+
 std::vector<double> parse_albedos(const std::string& text) {
     std::vector<double> albedos;
     for (std::size_t begin = 0; begin <= text.size();) {
@@ -108,6 +122,10 @@ void add_bake_flags(const Command& command, BakeRequest& request) {
              [&](const std::string& text) {
                  request.bake.rays = parse_integer(text, "--rays", 1, kLargestBakeRays);
              });
+    add_flag(command, "--method", "NAME",
+             fmt::format("How directions are chosen: {} (default: fibonacci)",
+                         fmt::join(bake_methods(), ", ")),
+             [&](const std::string& text) { request.bake.method = parse_method(text); });
     add_flag(command, "--bounces", "N",
              "Times that light goes on between parts of the mesh, in transfer (default: 0)",
              [&](const std::string& text) {

@@ -16,6 +16,7 @@
 #include "prt/blocked_sums.h"
 #include "prt/hemisphere.h"
 #include "prt/morton.h"
+#include "prt/random_hemisphere.h"
 #include "prt/reflected_light.h"
 #include "sh/index.h"
 #include "sh/lobes.h"
@@ -73,45 +74,74 @@ constexpr std::size_t kTaskRays = std::size_t{1} << 17;
 struct Plan {
     explicit Plan(const BakeOptions& options)
         : order(options.order),
+          rays(static_cast<std::size_t>(options.rays)),
+          method(options.method),
           // The bent normal comes from degree 1.
           sum_order(std::max(2, options.order)),
-          local(fibonacci_hemisphere(static_cast<std::size_t>(options.rays))),
+          fibonacci(fibonacci_hemisphere(method == BakeMethod::fibonacci ? rays : 0)),
           weight(static_cast<float>(2 * kPi / options.rays)),
           hemisphere(zonal_coefficients(phong_eigenvalues(0, sum_order))),
           cosine(zonal_coefficients(clamped_cosine_eigenvalues(options.order))) {
         for (double& value : cosine) value /= kPi;
     }
 
-    int order, sum_order;
-    HemisphereDirections local;
+    int order;
+    std::size_t rays;
+    BakeMethod method;
+    int sum_order;
+    HemisphereDirections fibonacci;
     float weight;  // of each direction
     std::vector<double> hemisphere, cosine;
 };
 
-// The directions of a vertex that are blocked, so many at a time.
-class BlockedSamples {
+// The directions of one vertex after the other, and those that are blocked.
+class Rays {
   public:
-    BlockedSamples() : hits_(kDirections) {
-        for (auto* values : {&x_, &y_, &z_, &weight_}) values->resize(kDirections);
+    explicit Rays(const Plan& plan) : plan_(plan), hits_(kDirections) {
+        for (auto* values : {&x_, &y_, &z_}) values->resize(kDirections);
+        weight_.assign(kDirections, plan.weight);
+        if (plan.method == BakeMethod::fibonacci) return;
+        for (auto* values : {&drawn_.x, &drawn_.y, &drawn_.z}) values->resize(plan.rays);
     }
 
-    detail::Samples find(const RayScene& scene, const glm::vec3& origin, const glm::mat3& frame,
-                         const Plan& plan, std::size_t begin) {
-        const HemisphereDirections& local = plan.local;
-        const std::size_t found = scene.find_blocked(
-            origin, frame, std::min(kDirections, local.count() - begin), local.x.data() + begin,
-            local.y.data() + begin, local.z.data() + begin, hits_.data());
-        for (std::size_t h = 0; h < found; ++h) {
-            const std::size_t i = begin + hits_[h];
-            x_[h] = local.x[i];
-            y_[h] = local.y[i];
-            z_[h] = local.z[i];
+    void choose(std::uint32_t vertex) {
+        switch (plan_.method) {
+            case BakeMethod::fibonacci:
+                local_ = &plan_.fibonacci;
+                return;
+            case BakeMethod::owen_sobol:
+                owen_sobol_hemisphere(vertex, drawn_);
+                break;
+            case BakeMethod::stratified:
+                stratified_hemisphere(vertex, drawn_);
+                break;
+            case BakeMethod::random:
+                random_hemisphere(vertex, drawn_);
+                break;
         }
-        std::fill_n(weight_.data(), found, plan.weight);
+        local_ = &drawn_;
+    }
+
+    /// Those that are blocked of up to kDirections from `begin` on.
+    detail::Samples find_blocked(const RayScene& scene, const glm::vec3& origin,
+                                 const glm::mat3& frame, std::size_t begin) {
+        const float* const x = local_->x.data() + begin;
+        const float* const y = local_->y.data() + begin;
+        const float* const z = local_->z.data() + begin;
+        const std::size_t found = scene.find_blocked(
+            origin, frame, std::min(kDirections, plan_.rays - begin), x, y, z, hits_.data());
+        for (std::size_t h = 0; h < found; ++h) {
+            x_[h] = x[hits_[h]];
+            y_[h] = y[hits_[h]];
+            z_[h] = z[hits_[h]];
+        }
         return {found, x_.data(), y_.data(), z_.data(), weight_.data()};
     }
 
   private:
+    const Plan& plan_;
+    HemisphereDirections drawn_;
+    const HemisphereDirections* local_ = nullptr;
     AlignedVector<std::uint32_t> hits_;
     AlignedVector<float> x_, y_, z_, weight_;
 };
@@ -146,7 +176,7 @@ bool needs_rays(const BakeRows& rows) {
 BakeReport bake_block(const Plan& plan, const Mesh& mesh, const RayScene& scene,
                       const std::vector<Reflector>& reflectors, const std::uint32_t* vertices,
                       std::size_t count, const BakeRows& rows) {
-    const std::size_t size = sh_count(plan.order), rays = plan.local.count();
+    const std::size_t size = sh_count(plan.order), rays = plan.rays;
     BakeReport report;
     report.vertices = count;
     detail::BlockedSums sums(plan.sum_order, rows.transfer != nullptr, count);
@@ -156,15 +186,16 @@ BakeReport bake_block(const Plan& plan, const Mesh& mesh, const RayScene& scene,
     std::vector<double> reflected(reflects ? size * count : 0);
     if (needs_rays(rows)) {
         report.rays = count * rays;
-        BlockedSamples samples;
+        Rays chosen(plan);
         for (std::size_t k = 0; k < count; ++k) {
             const std::uint32_t v = vertices[k];
             const glm::dvec3 normal = glm::normalize(mesh.normals[v]);
             const glm::vec3 origin = scene.origin(mesh.positions[v], normal);
             const glm::mat3 frame(vertex_frame(normal, v));
+            chosen.choose(v);
             std::size_t blocked = 0;
             for (std::size_t begin = 0; begin < rays; begin += kDirections) {
-                const detail::Samples found = samples.find(scene, origin, frame, plan, begin);
+                const detail::Samples found = chosen.find_blocked(scene, origin, frame, begin);
                 sums.add(k, frame, found);
                 if (reflects) light.add(origin, frame, found, reflected.data() + size * k);
                 blocked += found.count;
@@ -241,7 +272,7 @@ BakeReport bake_vertices(const Mesh& mesh, const RayScene& scene, const BakeOpti
         if (progress) progress->tick(end - begin);
         return report;
     };
-    const std::size_t grain = std::clamp<std::size_t>(kTaskRays / plan.local.count(), 1, kVertices);
+    const std::size_t grain = std::clamp<std::size_t>(kTaskRays / plan.rays, 1, kVertices);
     return ordered_reduce(count, grain, BakeReport(), bake_some, add);
 }
 

@@ -43,6 +43,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "core/method_names.h"
 #include "core/progress.h"
 #include "prt/mesh.h"
 #include "prt/ray_scene.h"
@@ -52,9 +53,25 @@ namespace airlight {
 inline constexpr int kLargestBakeOrder = 10;
 inline constexpr int kLargestBakeRays = 1 << 20;
 
+/// How the directions of a vertex are chosen (prt/hemisphere.h, prt/random_hemisphere.h).
+enum class BakeMethod {
+    fibonacci,
+    owen_sobol,
+    stratified,
+    random,
+};
+
+inline constexpr NamedMethod<BakeMethod> kBakeMethods[] = {
+    {BakeMethod::fibonacci, "fibonacci"},
+    {BakeMethod::owen_sobol, "owen-sobol"},
+    {BakeMethod::stratified, "stratified"},
+    {BakeMethod::random, "random"},
+};
+
 struct BakeOptions {
     int order = 6;    ///< 1 … kLargestBakeOrder
     int rays = 1024;  ///< directions of each vertex, 1 … kLargestBakeRays
+    BakeMethod method = BakeMethod::fibonacci;
 };
 
 /// Where the results of a run of vertices go, one row per vertex in the order in which they are

@@ -69,6 +69,7 @@ PrtKey BakePlan::key(int pass) const {
     for (const PrtKey& key : mesh_keys_) hash.add(key);
     hash.add_integer(static_cast<std::uint64_t>(job_->bake.order));
     hash.add_integer(static_cast<std::uint64_t>(job_->bake.rays));
+    hash.add(method_name(kBakeMethods, job_->bake.method));
     hash.add_integer(job_->scene.rays.ground_height ? 1 : 0);
     hash.add(job_->scene.rays.ground_height.value_or(0));
     hash.add_integer(static_cast<std::uint64_t>(pass));

@@ -2,6 +2,7 @@
 // airlight bake from the command line.
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "prt/bake.h"
 #include "prt/bake_scene.h"
@@ -64,6 +65,21 @@ TEST_F(BakeCommand, BytesFollowFromTheRequestAlone) {
     const PrtKey other = PrtReader(path_).header().key;
     write_bytes(path_, first);
     EXPECT_NE(PrtReader(path_).header().key, other);
+}
+
+TEST_F(BakeCommand, EveryMethodIsAnotherBake) {
+    const Mesh mesh = read_mesh(mesh_);
+    const RayScene scene(mesh);
+    std::set<std::string> keys;
+    for (const NamedMethod<BakeMethod>& each : kBakeMethods) {
+        ASSERT_EQ(run(call({"--method", std::string(each.name), "--force"})).status, 0);
+        PrtReader reader(path_);
+        BakeOptions options;
+        options.rays = 256;
+        options.method = each.method;
+        EXPECT_EQ(reader.read_all(PrtKind::transfer), bake_mesh(mesh, scene, options).transfer);
+        EXPECT_TRUE(keys.insert(to_text(reader.header().key)).second) << each.name;
+    }
 }
 
 TEST_F(BakeCommand, BouncesAddLightBetweenParts) {
@@ -145,6 +161,8 @@ TEST_F(BakeCommand, MistakesAreSaidInOneSentence) {
         refused(call({"--bounces", "1", "--albedo", albedo}), 2, "--albedo");
     }
     refused(call({"--bounces", "1", "--albedo", "0.5,0.5"}), 2, "--albedo: names 2 albedos");
+    refused(call({"--method", "guess"}), 2,
+            "--method: 'guess' is no method; it can be fibonacci, owen-sobol, stratified");
     refused(call({"--kind", "glow"}), 2, "--kind: 'glow' is no kind");
     refused(call({"--kind", "transfer,transfer"}), 2, "named twice");
     refused(call({"--ground", "nan"}), 2, "--ground");

@@ -165,6 +165,30 @@ TEST(Bake, MoreRaysComeNearerToTheTruth) {
     EXPECT_LT(before, 1e-3);
 }
 
+TEST(Bake, EveryMethodComesToTheSameForAnyThreads) {
+    const Mesh floor = make_floor();
+    const Mesh ball = make_sphere(100, 1.0, {1.2, 0.3, 2});
+    const RayScene scene(floor, {&ball});
+    const Bake truth = bake(floor, {&ball}, 6, 262144);
+    for (const NamedMethod<BakeMethod>& each : kBakeMethods) {
+        BakeOptions options;
+        options.method = each.method;
+        options.rays = 30000;
+        const Bake one = bake_mesh(floor, scene, options, kEverything);
+        const double random = each.method == BakeMethod::random ? 6 : 1;
+        EXPECT_LT(largest_difference(one.visibility.data(), truth.visibility), 2e-3 * random)
+            << each.name;
+        EXPECT_LT(largest_difference(one.transfer.data(), truth.transfer), 1e-3 * random)
+            << each.name;
+        EXPECT_FALSE(each.method != BakeMethod::fibonacci &&
+                     same_bytes(one.transfer, bake(floor, {&ball}, 6, 30000).transfer));
+        for (const int threads : {1, 3}) {
+            const ThreadLimit limit(threads);
+            EXPECT_TRUE(same_bytes(one, bake_mesh(floor, scene, options, kEverything)));
+        }
+    }
+}
+
 TEST(Bake, ByProductsAreThoseOfTheCoefficients) {
     const Mesh globe = [] {
         Mesh mesh = make_globe(12);
