@@ -10,9 +10,11 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "cli/command.h"
 #include "cli/numbers.h"
+#include "cli/sheet_mesh.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "envmap/io.h"
@@ -26,6 +28,7 @@ struct SheetRequest {
     double exposure = 0;  ///< in stops, on top of the automatic one
     int tile_width = 512;
     int columns = 0;
+    SheetMeshRequest mesh;
 };
 
 std::string label_of(const std::string& path, const Image& map) {
@@ -58,6 +61,8 @@ void check_output(const SheetRequest& request, const CommonOptions& common) {
 
 void run_sheet(const SheetRequest& request, const CommonOptions& common) {
     check_output(request, common);
+    std::optional<SheetMesh> mesh;
+    if (request.mesh.given()) mesh.emplace(request.mesh, common.max_memory);
     ReadOptions options;
     options.max_memory = common.max_memory;
     options.nonfinite = NonfinitePolicy::zero;
@@ -74,11 +79,14 @@ void run_sheet(const SheetRequest& request, const CommonOptions& common) {
                 std::clamp(std::round(request.tile_width * aspect), 1.0, 4.0 * request.tile_width));
             const std::size_t tile_bytes =
                 checked_product({static_cast<std::size_t>(request.tile_width),
-                                 static_cast<std::size_t>(tile_height), 16, request.inputs.size()},
+                                 static_cast<std::size_t>(tile_height + request.tile_width), 16,
+                                 request.inputs.size()},
                                 "the sheet");
             require_memory(tile_bytes, common.max_memory, "the sheet", request.output);
         }
-        tiles.push_back({scale_to(map, request.tile_width, tile_height), label_of(input, map)});
+        Image tile = scale_to(map, request.tile_width, tile_height);
+        if (mesh) tile = mesh->picture(map, tile);
+        tiles.push_back({std::move(tile), label_of(input, map)});
     }
     const Sheet sheet = make_sheet(tiles, exposure, request.columns);
     if (!sheet.labelled) spdlog::info("no font was found, so the sheet has no labels");
@@ -95,6 +103,7 @@ Command declare_sheet(CLI::App& program) {
         "Show HDR images side by side in one tone-mapped PNG",
         "  airlight sheet room.exr foggy.exr -o sheet.png\n"
         "  airlight sheet room.exr foggy/*.exr -o sheet.png --exposure -1 --columns 3\n"
+        "  airlight sheet room.exr foggy.exr --prt knot.prt --mesh knot.ply -o knot.png\n"
         "All images share the exposure that suits the first one.");
     const auto request = std::make_shared<SheetRequest>();
     command.app->add_option("images", request->inputs, "Images (.exr, .hdr, .pfm, .tif)")
@@ -113,6 +122,7 @@ Command declare_sheet(CLI::App& program) {
              [=](const std::string& text) {
                  request->columns = parse_integer(text, "--columns", 1, 1000);
              });
+    add_sheet_mesh_flags(command, request->mesh);
     add_force_flag(command);
     add_max_memory_flag(command);
     command.run = [request, common = command.common] { run_sheet(*request, *common); };

@@ -12,7 +12,7 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "prt/byte_order.h"
-#include "prt/prt_key.h"
+#include "prt/prt_match.h"
 
 namespace airlight {
 namespace {
@@ -160,37 +160,6 @@ std::string ply_header(const Mesh& mesh, bool wide, bool bent, PrtKind kind, con
                        mesh.triangles.size(), small ? "int" : "uint");
 }
 
-void require_whole(const PrtReader& reader) {
-    const PrtHeader& header = reader.header();
-    if (header.shards > 1) {
-        throw Error(ErrorCode::usage,
-                    fmt::format("is part {} of {}, and a PLY takes a whole file", header.shard + 1,
-                                header.shards),
-                    reader.path());
-    }
-    if (reader.find(PrtKind::vertex_index)) {
-        throw Error(ErrorCode::usage,
-                    "has rows in an order of its own, and a PLY takes them in that of the mesh",
-                    reader.path());
-    }
-}
-
-void require_mesh(const PrtReader& reader, const Mesh& mesh, const std::string& name) {
-    const PrtHeader& header = reader.header();
-    if (mesh.positions.size() != header.mesh_vertices) {
-        throw Error(ErrorCode::data,
-                    fmt::format("has {} vertices, and {} is of a mesh of {}", mesh.positions.size(),
-                                reader.path(), header.mesh_vertices),
-                    name);
-    }
-    if (mesh_key(mesh) != header.mesh) {
-        throw Error(ErrorCode::data,
-                    fmt::format("is not the mesh that {} is of: its key is {}, not {}",
-                                reader.path(), to_text(mesh_key(mesh)), to_text(header.mesh)),
-                    name);
-    }
-}
-
 void write_triangles(const Mesh& mesh, AtomicFile& file) {
     Bytes bytes;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -223,7 +192,7 @@ void write_prt_npy(const PrtReader& reader, PrtKind kind, const std::string& pat
 
 void write_prt_ply(const PrtReader& reader, PrtKind kind, const Mesh& mesh,
                    const std::string& mesh_name, const std::string& path, bool force) {
-    require_whole(reader);
+    require_whole(reader, "a PLY");
     require_mesh(reader, mesh, mesh_name);
     const Shade shade = choose_shade(reader);
     const bool bent = reader.find(PrtKind::bent_normal).has_value();

@@ -260,6 +260,11 @@ glm::vec3 RayScene::origin(const glm::dvec3& position, const glm::dvec3& normal)
     return {clamped(q.x), clamped(q.y), clamped(q.z)};
 }
 
+glm::vec3 RayScene::point(const glm::dvec3& position) const {
+    const glm::dvec3 q = (position - centre_) * scale_;
+    return {clamped(q.x), clamped(q.y), clamped(q.z)};
+}
+
 // Calls trace(begin, size, rays) for packets of the rays, aimed and checked.
 template <class Trace>
 void RayScene::for_packets(const glm::vec3& origin, const glm::mat3& frame, std::size_t count,
