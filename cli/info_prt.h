@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,12 @@ struct PrtInfo {
     std::vector<PrtFigures> figures;
     std::string report;
     std::uint64_t file_bytes = 0, fingerprint = 0;
+    /// Of an unfinished part, which has header and file_bytes only: the rows that can be used.
+    std::optional<std::uint64_t> rows_done;
+    bool damaged = false;  ///< more follow that cannot
 };
 
-/// Reads all of a file; throws as PrtReader does.
+/// Reads all of a file, also of an unfinished part; throws as PrtReader does.
 PrtInfo look_into_prt(const std::string& path, std::size_t max_memory);
 
 std::string to_lines(const std::string& path, const PrtInfo& file);

@@ -55,6 +55,22 @@ TEST(Progress, DrawsShareAndTimeLeftAndErasesItself) {
     EXPECT_EQ(text.substr(text.size() - 4), "\r\x1b[K");
 }
 
+TEST(Progress, BeginsWhereAnEarlierProcessEnded) {
+    const Terminal terminal;
+    ASSERT_GE(terminal.descriptor(), 0);
+    ProgressOptions options;
+    options.descriptor = terminal.descriptor();
+    options.before = 800000;
+    Progress progress("bake", 1000000, options);
+    EXPECT_EQ(progress.done(), 800000u);
+    std::this_thread::sleep_for(std::chrono::milliseconds(120));
+    progress.tick(100);
+    const std::string text = terminal.text();
+    EXPECT_NE(text.find(" 80 % "), std::string::npos) << text;
+    // 199900 ticks to come at 100 in 0.12 s or more; of all that is done they would be 0.03 s.
+    EXPECT_EQ(text.find("0:00 left"), std::string::npos) << text;
+}
+
 TEST(Progress, DrawsSeldomHoweverOftenItTicks) {
     const Terminal terminal;
     const auto start = std::chrono::steady_clock::now();
