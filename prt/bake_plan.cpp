@@ -14,9 +14,8 @@
 namespace airlight {
 namespace {
 
-// Rays of a block of rows of a part, about: a second of one core, so that little is lost when a
-// process ends between two blocks.
-constexpr std::uint64_t kBlockRays = std::uint64_t{1} << 23;
+// Rays of a block of rows of a part, about, where a row has many: a tenth of a second of one core.
+constexpr std::uint64_t kBlockRays = std::uint64_t{1} << 20;
 constexpr std::uint64_t kBlockBytes = std::uint64_t{256} << 10;
 
 bool has(const std::vector<PrtTable>& tables, PrtKind kind) {

@@ -27,8 +27,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kSuffix = ".baking";
-// Rays that a thread traces between two looks at the work file, about: a second.
-constexpr std::uint64_t kThreadRays = std::uint64_t{1} << 23;
+// Rays that a thread traces between two looks at the work file, about: half a second. At its end
+// threads wait for the last one, half of a task of prt/bake.cpp, which is 1 %.
+constexpr std::uint64_t kThreadRays = std::uint64_t{1} << 22;
 constexpr std::size_t kThreadRows = 2048;
 constexpr std::size_t kBatchRows = 16384;
 // With a batch and the time of the sync itself, far under the 30 s that may be lost.
@@ -151,6 +152,8 @@ struct BakeRun::State {
         if (stages.count(pass) > 0) return;
         const PrtHeader header =
             plan.part_header(pass, options.shard, std::max<std::uint32_t>(options.shards, 1));
+        // Refuses tables that nobody makes, before the work.
+        detail::BakeBuffers(header, 0);
         auto stage = std::make_unique<Stage>(header, options, suffix(pass));
         if (stage->writer.damaged()) {
             warnings.push_back(fmt::format("{}: is damaged from row {} on, which are baked again",
