@@ -46,6 +46,7 @@ std::vector<LadderEffectInfo> ladder_effects() {
         effects.push_back(
             {ladder.effect, [&ladder](const LadderOptions&) { return ladder.plan(); }});
     }
+    effects.push_back({"transfer", [](const LadderOptions&) { return plan_transfer_ladder(); }});
     return effects;
 }
 

@@ -50,6 +50,9 @@ struct LadderWork {
 /// Fog of sun_and_sky() by every method: errors against the rings at one size, cost at several.
 LadderWork plan_fog_ladder(const LadderOptions& options);
 
+/// Visibility and transfer of a mesh by every choice of directions.
+LadderWork plan_transfer_ladder();
+
 /// Which time a measurement is of. CPU time hardly depends on what else the machine does, and where
 /// one thread does all the work it is the wall time of an idle machine.
 enum class TimeKind { wall, cpu };

@@ -5,7 +5,7 @@
 // Their randomness is a hash of the vertex's number in the file, so that neighbours do not share
 // their error and a vertex has the same directions whichever thread, shard or run bakes it. They
 // fill the out.count() directions of `out`, unit to 1e-6, z > 0; each stands for the solid angle
-// 2 pi / count. 5, 6 and 9 ns a direction.
+// 2 pi / count. 8, 9 and 13 ns a direction.
 //
 // Errors stand beside those of fibonacci_hemisphere() in prt/bake.h.
 #pragma once

@@ -313,6 +313,42 @@ TEST(Ladder, BrdfRungsHoldTheirErrors) {
                      {{"bands order 16", 0.2}, {"bands order 64", 4e-3}}, {"brdf-fog"});
 }
 
+// Relative RMS errors of transfer and visibility at 1024 rays, a half more than measured.
+TEST(Ladder, ChoicesOfDirectionsKeepTheirOrder) {
+    const std::map<std::string, std::pair<double, double>> bounds = {
+        {"fibonacci", {0.0067, 0.0135}},
+        {"owen-sobol", {0.009, 0.017}},
+        {"stratified", {0.0125, 0.0225}},
+        {"random", {0.04, 0.092}}};
+    const ScratchDirectory scratch;
+    const Outcome outcome = run({"ladder", "transfer", "-o", scratch.path(), "--threads", "1"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    std::map<std::string, double> before;
+    for (const CsvRow& row : read_csv(scratch / "transfer.csv")) {
+        const std::string& method = row.at("method");
+        const double transfer = std::stod(row.at("rms_transfer_error"));
+        const double visibility = std::stod(row.at("rms_visibility_error"));
+        EXPECT_GT(std::stod(row.at("us_per_vertex")), 0);
+        EXPECT_GT(std::stod(row.at("max_transfer_error")), 0);
+        if (before.count(method)) {
+            EXPECT_LT(transfer, before[method] / 1.6) << method;
+        }
+        before[method] = transfer;
+        if (row.at("rays") == "1024") {
+            EXPECT_LE(transfer, bounds.at(method).first) << method;
+            EXPECT_LE(visibility, bounds.at(method).second) << method;
+        }
+    }
+    for (const auto& [method, bound] : bounds) EXPECT_EQ(before.count(method), 1u) << method;
+    EXPECT_LT(before["fibonacci"], before["owen-sobol"]);
+    EXPECT_LT(before["owen-sobol"], before["stratified"]);
+    EXPECT_LT(3 * before["stratified"], before["random"]);
+    for (const char* plot : {"transfer", "transfer-rays", "visibility", "visibility-rays"}) {
+        EXPECT_EQ(read_bytes(scratch / (plot + std::string(".svg"))).rfind("<svg ", 0), 0u);
+    }
+    expect_self_contained(read_bytes(scratch / "index.html"));
+}
+
 TEST(Ladder, MistakesAndOldReportsAreRefusedBeforeAnythingIsMeasured) {
     const ScratchDirectory scratch;
     const std::string directory = scratch.path();
