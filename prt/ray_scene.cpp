@@ -188,6 +188,17 @@ void end_at_ground(float height, std::size_t count, RTCRay* rays) {
     }
 }
 
+RayHit to_hit(const RTCRayHit& full, std::size_t number) {
+    const RTCHit& hit = full.hit;
+    const RTCRay& ray = full.ray;
+    const float along = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z;
+    return {static_cast<std::uint32_t>(number), hit.geomID, hit.primID, hit.u, hit.v, along < 0};
+}
+
+bool is_finite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
 }  // namespace
 
 RayScene::RayScene(const Mesh& mesh, const std::vector<const Mesh*>& occluders,
@@ -271,7 +282,7 @@ void RayScene::for_packets(const glm::vec3& origin, const glm::mat3& frame, std:
                            const float* x, const float* y, const float* z,
                            const Trace& trace) const {
     assert(count <= std::numeric_limits<std::uint32_t>::max());
-    if (!(std::isfinite(origin.x) && std::isfinite(origin.y) && std::isfinite(origin.z))) {
+    if (!is_finite(origin)) {
         throw Error(ErrorCode::data, "the origin of rays is not finite");
     }
     alignas(64) RTCRay rays[kRayPacket];
@@ -328,20 +339,49 @@ std::size_t RayScene::find_hits(const glm::vec3& origin, const glm::mat3& frame,
                            sizeof(RTCRayHit));
         }
         for (std::size_t i = 0; i < size; ++i) {
-            const RTCHit& hit = full[i].hit;
-            if (hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-            const RTCRay& ray = full[i].ray;
-            const float along = hit.Ng_x * ray.dir_x + hit.Ng_y * ray.dir_y + hit.Ng_z * ray.dir_z;
-            hits[found++] = {static_cast<std::uint32_t>(begin + i),
-                             hit.geomID,
-                             hit.primID,
-                             hit.u,
-                             hit.v,
-                             along < 0};
+            if (full[i].hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+            hits[found++] = to_hit(full[i], begin + i);
         }
     };
     for_packets(origin, frame, count, x, y, z, trace);
     return found;
+}
+
+glm::vec3 RayScene::place(const glm::dvec3& position) const {
+    const glm::dvec3 q = (position - centre_) * scale_;
+    return {clamped(q.x), clamped(q.y), clamped(q.z)};
+}
+
+std::optional<RayHit> RayScene::find_nearest(const glm::dvec3& origin, const glm::dvec3& direction,
+                                             double distance) const {
+    const glm::vec3 o = place(origin), d(direction);
+    if (!is_finite(o) || !is_finite(d) || !(distance > 0)) return {};
+    RTCRayHit full = {};
+    full.ray = {o.x,        o.y, o.z, 0, d.x, d.y, d.z, 0, static_cast<float>(distance * scale_),
+                0xffffffff, 0,   0};
+    full.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    full.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    {
+        const detail::FlushDenormals flush;
+        rtcIntersect1(embree_->scene, &context, &full);
+    }
+    if (full.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    return to_hit(full, 0);
+}
+
+bool RayScene::is_blocked(const glm::dvec3& from, const glm::dvec3& to) const {
+    const glm::vec3 o = place(from), end = place(to);
+    const glm::vec3 d = end - o;
+    if (!is_finite(o) || !is_finite(d)) return false;
+    if (ground_ && (o.y < *ground_ || end.y < *ground_)) return true;
+    RTCRay ray = {o.x, o.y, o.z, 0, d.x, d.y, d.z, 0, 1, 0xffffffff, 0, 0};
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    const detail::FlushDenormals flush;
+    rtcOccluded1(embree_->scene, &context, &ray);
+    return ray.tfar < 0;
 }
 
 }  // namespace airlight

@@ -106,10 +106,21 @@ class RayScene {
     std::size_t find_hits(const glm::vec3& origin, const glm::mat3& frame, std::size_t count,
                           const float* x, const float* y, const float* z, RayHit* hits) const;
 
+    /// The nearest triangle on one ray in world coordinates, unit direction, nearer than `distance`
+    /// by Embree's single precision: take the place from the triangle's corners. The ground is not
+    /// among what is met. Nothing for a ray that is not finite.
+    std::optional<RayHit> find_nearest(const glm::dvec3& origin, const glm::dvec3& direction,
+                                       double distance) const;
+
+    /// Whether a triangle or the ground lies between two points in world coordinates, the ends not
+    /// counted.
+    bool is_blocked(const glm::dvec3& from, const glm::dvec3& to) const;
+
     /// For sources that include prt/embree_scene.h.
     const detail::EmbreeScene& embree() const { return *embree_; }
 
   private:
+    glm::vec3 place(const glm::dvec3& position) const;
     template <class Trace>
     void for_packets(const glm::vec3& origin, const glm::mat3& frame, std::size_t count,
                      const float* x, const float* y, const float* z, const Trace& trace) const;

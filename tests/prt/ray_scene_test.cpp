@@ -316,5 +316,46 @@ TEST(RayScene, OccludersBeyondAllMeasureAreCounted) {
     EXPECT_EQ(Rays(100).blocked(huge, glm::vec3(0)).size(), 100u);
 }
 
+TEST(RayScene, SingleRaysMeetWhatStreamsOfThemMeet) {
+    const Mesh ball = make_sphere(24, 3, {5, -2, 1});
+    const Mesh other = make_sphere(12, 1, {5, 4, 1});
+    const RayScene scene(ball, {&other});
+    const glm::dvec3 eye(1, 9, -3);
+    const HemisphereDirections local = fibonacci_hemisphere(4000);
+    const glm::dvec3 view = glm::normalize(glm::dvec3(5, 0, 1) - eye);
+    const glm::mat3 frame(vertex_frame(view, 0));
+    std::vector<RayHit> hits(local.count());
+    hits.resize(scene.find_hits(scene.origin(eye, glm::dvec3(0)), frame, local.count(),
+                                local.x.data(), local.y.data(), local.z.data(), hits.data()));
+    ASSERT_GT(hits.size(), 100u);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < local.count(); ++i) {
+        const glm::vec3 d = frame * glm::vec3(local.x[i], local.y[i], local.z[i]);
+        const auto hit = scene.find_nearest(eye, glm::dvec3(d), 1e9);
+        const bool met = next < hits.size() && hits[next].ray == i;
+        ASSERT_EQ(hit.has_value(), met) << i;
+        EXPECT_EQ(scene.is_blocked(eye, eye + 100.0 * glm::dvec3(d)), met);
+        if (!met) continue;
+        EXPECT_EQ(hit->mesh, hits[next].mesh);
+        EXPECT_EQ(hit->triangle, hits[next].triangle);
+        const Mesh& mesh = hit->mesh == 0 ? ball : other;
+        const glm::uvec3 c = mesh.triangles[hit->triangle];
+        const glm::dvec3 at = (1.0 - hit->u - hit->v) * mesh.positions[c.x] +
+                              double(hit->u) * mesh.positions[c.y] +
+                              double(hit->v) * mesh.positions[c.z];
+        // Before and behind the place.
+        const double distance = glm::length(at - eye);
+        EXPECT_FALSE(scene.is_blocked(eye, eye + 0.999 * distance * glm::dvec3(d)));
+        EXPECT_TRUE(scene.is_blocked(eye, eye + 1.001 * distance * glm::dvec3(d)));
+        EXPECT_FALSE(scene.find_nearest(eye, glm::dvec3(d), 0.999 * distance));
+        ++next;
+    }
+    EXPECT_EQ(next, hits.size());
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(scene.find_nearest({nan, 0, 0}, {0, 0, 1}, 1));
+    EXPECT_FALSE(scene.find_nearest(eye, {0, nan, 1}, 1));
+    EXPECT_FALSE(scene.is_blocked(eye, {0, nan, 1}));
+}
+
 }  // namespace
 }  // namespace airlight
