@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "cli/command.h"
-#include "cli/csv.h"
+#include "core/csv.h"
 #include "cli/eval_check.h"
 #include "cli/eval_functions.h"
 #include "cli/eval_table.h"

@@ -4,11 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
-#include <system_error>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -43,22 +40,6 @@ std::string take_arguments(const std::vector<std::string>& fields, const EvalHea
 }
 
 }  // namespace
-
-// "inf" and "nan" count as numbers; what underflows is 0 or denormal, what overflows is refused.
-std::optional<double> parse_double(std::string_view text) {
-    if (!text.empty() && text[0] == '+') text.remove_prefix(1);
-    if (text.empty() || text[0] == '+') return std::nullopt;
-    double value = 0;
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (stop != text.data() + text.size()) return std::nullopt;
-    if (error == std::errc::result_out_of_range) {
-        value = std::strtod(std::string(text).c_str(), nullptr);
-        if (std::isinf(value)) return std::nullopt;
-    } else if (error != std::errc()) {
-        return std::nullopt;
-    }
-    return value;
-}
 
 EvalHeader read_eval_header(const CsvRecord& record, const EvalFunction& function) {
     const std::vector<std::string> names = csv_fields(record.text);

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/csv.h"
 #include "cli/eval_functions.h"
+#include "core/csv.h"
 
 namespace airlight {
 
@@ -28,9 +28,6 @@ struct EvalRows {
     std::vector<std::size_t> missing_fields;
     std::vector<double> values;
 };
-
-/// A number as the files hold it, all of the text; nothing when it is none.
-std::optional<double> parse_double(std::string_view text);
 
 /// Throws Error(data) when a column is missing or there twice.
 EvalHeader read_eval_header(const CsvRecord& record, const EvalFunction& function);

@@ -14,6 +14,7 @@
 #include "core/checked.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "viewer/camera.h"
 #include "viewer/map_lookup.h"
 
 namespace airlight {
@@ -48,17 +49,6 @@ Sphere bounding_sphere(const Mesh& mesh) {
         sphere.radius = std::max(sphere.radius, glm::length(p - sphere.centre));
     });
     return sphere;
-}
-
-/// Columns: right, up, and against the view.
-glm::dmat3 axes_of(const Camera& camera) {
-    const glm::dvec3 view = glm::normalize(camera.look_at - camera.position);
-    const glm::dvec3 right = glm::normalize(glm::cross(view, camera.up));
-    if (!std::isfinite(right.x + right.y + right.z)) {
-        throw Error(ErrorCode::usage,
-                    "the camera looks at its own position or along its up direction");
-    }
-    return {right, glm::cross(right, view), -view};
 }
 
 struct Rays {
@@ -110,7 +100,7 @@ Image mesh_picture(const Mesh& mesh, const RayScene& scene, const float* radianc
     const auto height = static_cast<std::size_t>(camera.height);
     require_memory(checked_product({width, height, 3, sizeof(float)}, "the picture"), max_memory,
                    "the picture");
-    const glm::dmat3 axes = axes_of(camera);
+    const glm::dmat3 axes = camera_axes(camera);
     const glm::vec3 origin = scene.point(camera.position);
     const double step = 2 * std::tan(0.5 * camera.vertical_fov) / (camera.height * samples);
     const int per_pixel = samples * samples;

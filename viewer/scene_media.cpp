@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "viewer/phase_file.h"
+
 namespace airlight {
 namespace {
 
@@ -47,6 +49,20 @@ struct PartBuilder {
     void operator()(const SceneSlab&) { assert(!"a slab is no part"); }
 };
 
+PhaseFunction phase_of(const ScenePhase& phase) {
+    switch (phase.type) {
+        case PhaseType::isotropic:
+            break;
+        case PhaseType::rayleigh:
+            return PhaseFunction::rayleigh();
+        case PhaseType::henyey_greenstein:
+            return PhaseFunction::henyey_greenstein(phase.g);
+        case PhaseType::table:
+            return read_phase_table(phase.file.path);
+    }
+    return PhaseFunction::isotropic();
+}
+
 bool contains(const SceneBox& box, const glm::dvec3& x) {
     for (int axis = 0; axis < 3; ++axis) {
         if (!(x[axis] >= box.min[axis] && x[axis] <= box.max[axis])) return false;
@@ -73,7 +89,8 @@ std::optional<RaySpan> clip_to_box(const SceneBox& box, const glm::dvec3& origin
     return RaySpan{near, far};
 }
 
-MediumPart::MediumPart(const SceneMedium& medium) : phase_(medium.phase), bounds_(medium.bounds) {
+MediumPart::MediumPart(const SceneMedium& medium)
+    : phase_(phase_of(medium.phase)), bounds_(medium.bounds) {
     std::visit(PartBuilder{shapes_, tree_, colour_, albedo_}, medium.kind);
 }
 
@@ -114,6 +131,34 @@ glm::dvec3 MediumPart::depth(const glm::dvec3& origin, const glm::dvec3& directi
         [&](const DensityField& shape) { return optical_depth(shape, from, direction, distance); });
 }
 
+void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
+                      std::vector<double>& marks) const {
+    const auto add = [&](double at) {
+        if (at > 0 && at < distance) marks.push_back(at);
+    };
+    if (bounds_) {
+        if (const auto span = clip_to_box(*bounds_, origin, direction, distance)) {
+            add(span->near);
+            add(span->far);
+        }
+    }
+    const auto mark_blob = [&](const GaussianBlob& blob) {
+        const GaussianPass pass = gaussian_pass(blob.center, origin, direction);
+        // Beyond, it is no more than e^-9 of itself.
+        if (!(blob.scale * pass.rho_perp < 3)) return;
+        for (const double step : {-1.5, 0.0, 1.5}) add(pass.m_proj + step / blob.scale);
+    };
+    if (tree_) {
+        for (const std::uint32_t i : tree_->along(origin, direction, distance, 1e-4)) {
+            mark_blob(tree_->blobs()[i]);
+        }
+    } else if (shapes_.size() == 1) {
+        for (const Density& density : shapes_[0].parts) {
+            if (const auto* blob = std::get_if<GaussianBlob>(&density)) mark_blob(*blob);
+        }
+    }
+}
+
 SceneMedia::SceneMedia(const std::vector<SceneMedium>& media) {
     for (const SceneMedium& medium : media) {
         if (!std::holds_alternative<SceneSlab>(medium.kind)) parts_.emplace_back(medium);
@@ -139,20 +184,13 @@ glm::dvec3 SceneMedia::transmittance(const glm::dvec3& origin, const glm::dvec3&
     return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
 }
 
-std::vector<double> SceneMedia::borders(const glm::dvec3& origin, const glm::dvec3& direction,
-                                        double distance) const {
-    std::vector<double> places;
-    for (const MediumPart& part : parts_) {
-        if (!part.bounds()) continue;
-        const auto span = clip_to_box(*part.bounds(), origin, direction, distance);
-        if (!span) continue;
-        for (const double at : {span->near, span->far}) {
-            if (at > 0 && at < distance) places.push_back(at);
-        }
-    }
-    std::sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-    return places;
+std::vector<double> SceneMedia::marks(const glm::dvec3& origin, const glm::dvec3& direction,
+                                      double distance) const {
+    std::vector<double> marks = {0, distance};
+    for (const MediumPart& part : parts_) part.mark(origin, direction, distance, marks);
+    std::sort(marks.begin(), marks.end());
+    marks.erase(std::unique(marks.begin(), marks.end()), marks.end());
+    return marks;
 }
 
 }  // namespace airlight

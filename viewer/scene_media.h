@@ -9,6 +9,7 @@
 
 #include "medium/density_field.h"
 #include "medium/gaussian_tree.h"
+#include "medium/phase_function.h"
 #include "viewer/scene.h"
 
 namespace airlight {
@@ -28,7 +29,7 @@ class MediumPart {
     explicit MediumPart(const SceneMedium& medium);
 
     const glm::dvec3& albedo() const { return albedo_; }
-    const ScenePhase& phase() const { return phase_; }
+    const PhaseFunction& phase() const { return phase_; }
     const std::optional<SceneBox>& bounds() const { return bounds_; }
 
     /// Extinction [1/m] at a point; 0 outside the bounds.
@@ -38,6 +39,11 @@ class MediumPart {
     /// the medium is without end. The closed forms of medium/density_field.h. Of more than
     /// kFewBlobs Gaussians those are left out whose depths add up to kTreeDepth at most.
     glm::dvec3 depth(const glm::dvec3& origin, const glm::dvec3& direction, double distance) const;
+
+    /// Adds distances in (0, distance) at which the medium begins or ends along a ray, and those
+    /// around which a Gaussian is dense.
+    void mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
+              std::vector<double>& marks) const;
 
     static constexpr std::size_t kFewBlobs = 32;
     static constexpr double kTreeDepth = 1e-9;
@@ -51,7 +57,7 @@ class MediumPart {
     std::vector<DensityField> shapes_;
     std::shared_ptr<const GaussianTree> tree_;  ///< in place of a shape, for many Gaussians
     glm::dvec3 colour_{1}, albedo_{1};
-    ScenePhase phase_;
+    PhaseFunction phase_;
     std::optional<SceneBox> bounds_;
 };
 
@@ -70,9 +76,9 @@ class SceneMedia {
     glm::dvec3 transmittance(const glm::dvec3& origin, const glm::dvec3& direction,
                              double distance) const;
 
-    /// Distances within (0, distance) at which a medium begins or ends, ascending.
-    std::vector<double> borders(const glm::dvec3& origin, const glm::dvec3& direction,
-                                double distance) const;
+    /// 0, the marks of all media and `distance`, ascending.
+    std::vector<double> marks(const glm::dvec3& origin, const glm::dvec3& direction,
+                              double distance) const;
 
   private:
     std::vector<MediumPart> parts_;

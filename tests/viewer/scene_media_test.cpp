@@ -102,14 +102,18 @@ TEST(SceneMedia, AlbedosArePartsOfTheExtinction) {
     EXPECT_EQ(part.albedo().z, 0);
 }
 
-TEST(SceneMedia, BordersLieWhereBoxesBeginAndEnd) {
+TEST(SceneMedia, MarksLieWhereBoxesBeginAndEndAndBlobsAreDense) {
     const SceneMedia media({medium_of(SceneUniform{}, SceneBox{{1, -1, -1}, {2, 1, 1}}),
                             medium_of(SceneUniform{}, SceneBox{{-1, -1, -1}, {1.5, 1, 1}}),
                             medium_of(SceneUniform{}, SceneBox{{1, 2, -1}, {2, 3, 1}})});
-    EXPECT_EQ(media.borders({0, 0, 0}, {1, 0, 0}, 10), (std::vector<double>{1, 1.5, 2}));
-    EXPECT_EQ(media.borders({0, 0, 0}, {1, 0, 0}, 1.75), (std::vector<double>{1, 1.5}));
-    EXPECT_EQ(media.borders({0, 0, 0}, {-1, 0, 0}, 10), (std::vector<double>{1}));
-    EXPECT_EQ(media.borders({0, 5, 0}, {1, 0, 0}, 10), (std::vector<double>{}));
+    EXPECT_EQ(media.marks({0, 0, 0}, {1, 0, 0}, 10), (std::vector<double>{0, 1, 1.5, 2, 10}));
+    EXPECT_EQ(media.marks({0, 0, 0}, {1, 0, 0}, 1.75), (std::vector<double>{0, 1, 1.5, 1.75}));
+    EXPECT_EQ(media.marks({0, 0, 0}, {-1, 0, 0}, 10), (std::vector<double>{0, 1, 10}));
+    EXPECT_EQ(media.marks({0, 5, 0}, {1, 0, 0}, 10), (std::vector<double>{0, 10}));
+    SceneGaussians blobs;
+    blobs.blobs = {{{4, 1, 0}, 2, 1}, {{4, 5, 0}, 2, 1}};
+    EXPECT_EQ(SceneMedia({medium_of(blobs)}).marks({0, 0, 0}, {1, 0, 0}, kInfinite),
+              (std::vector<double>{0, 3.25, 4, 4.75, kInfinite}));
 }
 
 TEST(ClipToBox, RaysAlongFacesAreInside) {

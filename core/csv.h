@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,5 +51,8 @@ std::vector<std::string> csv_fields(std::string_view record);
 
 /// The same into a vector whose memory is used again.
 void csv_fields(std::string_view record, std::vector<std::string>& fields);
+
+/// A number as CSV files hold it, all of the text; nothing when it is none.
+std::optional<double> parse_double(std::string_view text);
 
 }  // namespace airlight

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/csv.h"
+#include "core/csv.h"
 
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <system_error>
 #include <utility>
 
 #include "core/atomic_file.h"
@@ -149,6 +153,22 @@ std::vector<std::string> csv_fields(std::string_view record) {
     std::vector<std::string> fields;
     csv_fields(record, fields);
     return fields;
+}
+
+// "inf" and "nan" count as numbers; what underflows is 0 or denormal, what overflows is refused.
+std::optional<double> parse_double(std::string_view text) {
+    if (!text.empty() && text[0] == '+') text.remove_prefix(1);
+    if (text.empty() || text[0] == '+') return std::nullopt;
+    double value = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (stop != text.data() + text.size()) return std::nullopt;
+    if (error == std::errc::result_out_of_range) {
+        value = std::strtod(std::string(text).c_str(), nullptr);
+        if (std::isinf(value)) return std::nullopt;
+    } else if (error != std::errc()) {
+        return std::nullopt;
+    }
+    return value;
 }
 
 }  // namespace airlight

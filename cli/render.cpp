@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// airlight render: the picture of a scene.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/numbers.h"
+#include "cli/stopwatch.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/memory.h"
+#include "core/progress.h"
+#include "envmap/io.h"
+#include "envmap/sheet.h"
+#include "viewer/reference_picture.h"
+#include "viewer/scene_file.h"
+
+namespace airlight {
+namespace {
+
+struct RenderRequest {
+    std::vector<std::string> inputs;
+    std::string output;
+    ReferencePictureOptions options;
+    double exposure = 0;
+};
+
+bool is_png(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension == ".png";
+}
+
+void parse_size_flag(const std::string& text, ReferencePictureOptions& options) {
+    const std::size_t cross = text.find('x');
+    if (cross == std::string::npos) {
+        throw Error(ErrorCode::usage, "'" + text + "' is no size such as 800x600", "--size");
+    }
+    options.width = parse_integer(text.substr(0, cross), "--size", 1, kLargestPicture);
+    options.height = parse_integer(text.substr(cross + 1), "--size", 1, kLargestPicture);
+}
+
+void check(const RenderRequest& request, const CommonOptions& common) {
+    if (request.inputs.size() != 1) {
+        throw Error(ErrorCode::usage, request.inputs.empty()
+                                          ? "a scene is missing (see airlight render --help)"
+                                          : "takes one scene");
+    }
+    if (request.output.empty()) {
+        throw Error(ErrorCode::usage, "the output is missing: give -o FILE.exr or FILE.png");
+    }
+    if (is_png(request.output)) {
+        check_target(request.output, common.force);
+    } else {
+        WriteOptions write;
+        write.force = common.force;
+        check_writable(request.output, write);
+    }
+}
+
+// Display values, at the exposure that suits the picture.
+void write_display(const std::string& path, const Image& image, double stops, bool force) {
+    Sheet sheet;
+    sheet.width = image.width;
+    sheet.height = image.height;
+    sheet.pixels.resize(image.pixels.size());
+    const double exposure = automatic_exposure(image) * std::exp2(stops);
+    for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
+        double display[3];
+        tone_map(image.pixels.data() + i, exposure, display);
+        for (std::size_t c = 0; c < 3; ++c) {
+            sheet.pixels[i + c] = static_cast<std::uint8_t>(std::lround(255 * display[c]));
+        }
+    }
+    write_png(path, sheet, force);
+}
+
+void run_render(const RenderRequest& request, const CommonOptions& common) {
+    check(request, common);
+    auto start = std::chrono::steady_clock::now();
+    const std::string& input = request.inputs[0];
+    const Scene scene = read_scene(input, common.max_memory);
+    WorldOptions reading;
+    reading.max_memory = common.max_memory;
+    const World world(scene, reading);
+    const double read_seconds = seconds_since(start);
+
+    start = std::chrono::steady_clock::now();
+    const int width = request.options.width > 0 ? request.options.width : scene.camera.width;
+    const int height = request.options.height > 0 ? request.options.height : scene.camera.height;
+    ReferencePicture picture;
+    {
+        ProgressOptions drawing;
+        drawing.quiet = common.verbosity < 0;
+        const bool twice = request.options.tolerance > 0 && request.options.samples > kFirstSamples;
+        Progress progress("render", (twice ? 2 : 1) * std::uint64_t(width) * std::uint64_t(height),
+                          drawing);
+        picture = render_reference(world, request.options, common.max_memory, &progress);
+    }
+    const double render_seconds = seconds_since(start);
+    if (picture.unfinished > 0) {
+        spdlog::warn(
+            "{}: {} pixels have noise above the tolerance after {} samples; more come "
+            "with --samples",
+            input, picture.unfinished, request.options.samples);
+    }
+    if (is_png(request.output)) {
+        write_display(request.output, picture.image, request.exposure, common.force);
+    } else {
+        WriteOptions write;
+        write.force = common.force;
+        write_image(request.output, picture.image, write);
+    }
+    spdlog::info("{}: {} x {} pixels, {} samples, noise {:.2g} of the brightest, {:.1f} s",
+                 request.output, width, height, picture.samples, picture.noise, render_seconds);
+    if (!common.json) return;
+    print(nlohmann::ordered_json{{"version", AIRLIGHT_VERSION},
+                                 {"input", input},
+                                 {"output", request.output},
+                                 {"engine", "reference"},
+                                 {"width", width},
+                                 {"height", height},
+                                 {"samples", picture.samples},
+                                 {"noise", picture.noise},
+                                 {"unfinished_pixels", picture.unfinished},
+                                 {"triangles", world.triangles()},
+                                 {"rays", picture.counts.rays},
+                                 {"line_points", picture.counts.line_points},
+                                 {"seconds", {{"read", read_seconds}, {"render", render_seconds}}},
+                                 {"peak_memory_bytes", peak_memory()}});
+}
+
+}  // namespace
+
+Command declare_render(CLI::App& program) {
+    Command command = declare_command(
+        program, "render", "SCENE -o OUT", "Render a scene with light that is scattered once",
+        "  airlight render courtyard.json -o courtyard.png\n"
+        "  airlight render courtyard.json -o courtyard.exr --samples 256 --tolerance 0.002\n"
+        "  airlight render courtyard.json -o small.png --size 200x150 --json\n"
+        "OUT is .exr, .hdr, .pfm or .tif (linear radiance) or .png (tone-mapped).");
+    const auto request = std::make_shared<RenderRequest>();
+    command.app->add_option("scenes", request->inputs, "A scene (docs/SCENES.md)")
+        ->option_text(" ");
+    add_flag(command, "-o,--output", "OUT", "The picture",
+             [=](const std::string& text) { request->output = text; });
+    add_flag(command, "--engine", "reference", "How (default: reference, the only one so far)",
+             [](const std::string& text) { parse_choice(text, "--engine", {"reference"}); });
+    add_flag(command, "--size", "WxH", "Pixels (default: the camera's)",
+             [=](const std::string& text) { parse_size_flag(text, request->options); });
+    add_flag(command, "--samples", "N", "Samples of a pixel, at most (default: 16)",
+             [=](const std::string& text) {
+                 request->options.samples = parse_integer(text, "--samples", 1, kLargestSamples);
+             });
+    add_flag(command, "--tolerance", "E",
+             "Noise, relative to the brightest pixel, at which a pixel is done (default: take all "
+             "samples)",
+             [=](const std::string& text) {
+                 request->options.tolerance = parse_number(text, "--tolerance", {1e-9, 1});
+             });
+    add_flag(command, "--exposure", "EV", "Stops brighter than automatic, for .png (default: 0)",
+             [=](const std::string& text) {
+                 request->exposure = parse_number(text, "--exposure", {-30, 30});
+             });
+    add_json_flag(command, "Report on standard output: counts, noise, seconds, memory");
+    add_force_flag(command);
+    add_max_memory_flag(command);
+    command.run = [request, common = command.common] { run_render(*request, *common); };
+    return command;
+}
+
+}  // namespace airlight

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// `airlight render`: scenes to pictures.
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "envmap/io.h"
+#include "medium/airlight.h"
+#include "tests/cli/program.h"
+#include "tests/core/scratch_directory.h"
+
+namespace airlight {
+namespace {
+
+const std::string kLamp = R"({"airlight_scene": 1,
+  "camera": {"position": [0, 0, 0], "look_at": [0, 0, 1], "size": [16, 8]},
+  "lights": [{"type": "point", "position": [0, 1, 3], "intensity": [10, 5, 0]}],
+  "media": [{"type": "uniform", "scattering": 0.2, "absorption": 0.05}],
+  "objects": [{"mesh": "wall.obj", "material": {"type": "lambert", "diffuse": 0}}]})";
+
+std::string write_scene(const ScratchDirectory& directory, const std::string& text) {
+    write_bytes(directory / "wall.obj", "v -99 -99 5\nv 0 99 5\nv 99 -99 5\nf 1 2 3\n");
+    write_bytes(directory / "a.json", text);
+    return directory / "a.json";
+}
+
+TEST(RenderCommand, AWallInFogShowsTheAirlightBeforeIt) {
+    const ScratchDirectory directory;
+    const std::string scene = write_scene(directory, kLamp), exr = directory / "a.exr";
+    const Outcome outcome =
+        run({"render", scene, "-o", exr, "--samples", "64", "--size", "3x3", "--json"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const nlohmann::json report = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(report["engine"], "reference");
+    EXPECT_EQ(report["samples"], 9 * 64);
+    EXPECT_EQ(report["triangles"], 1);
+    EXPECT_GT(report["line_points"], 9 * 64 * 15);
+    ReadOptions any;
+    any.allow_any_aspect = true;
+    const Image picture = read_image(exr, any);
+    ASSERT_EQ(picture.width, 3);
+    // The middle of the picture: a ray along +Z to the black wall, its neighbours within a pixel of
+    // 13 degrees left out.
+    const double d = std::sqrt(10.0), gamma = std::atan2(1.0, 3.0);
+    const double expected = 0.2 * 0.25 * 10 * airlight(gamma, 0.25 * d, 0.25 * 5);
+    EXPECT_NEAR(picture.at(1, 1, 0), expected, 0.05 * expected);
+    EXPECT_NEAR(picture.at(1, 1, 1), 0.5 * picture.at(1, 1, 0), 1e-6);
+    EXPECT_EQ(picture.at(1, 1, 2), 0);
+    // The lamp is above.
+    EXPECT_GT(picture.at(0, 1, 0), picture.at(2, 1, 0));
+}
+
+TEST(RenderCommand, EqualRunsGiveEqualBytes) {
+    const ScratchDirectory directory;
+    const std::string scene = write_scene(directory, kLamp);
+    for (const std::string threads : {"1", "2"}) {
+        const Outcome outcome =
+            run({"render", scene, "-o", directory / (threads + ".png"), "--samples", "12",
+                 "--tolerance", "0.01", "--threads", threads});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+    }
+    EXPECT_EQ(read_bytes(directory / "1.png"), read_bytes(directory / "2.png"));
+}
+
+TEST(RenderCommand, RefusesInOneSentence) {
+    const ScratchDirectory directory;
+    const std::string scene = write_scene(directory, kLamp), out = directory / "a.exr";
+    expect_failure({"render"}, 2, "a scene is missing");
+    expect_failure({"render", scene}, 2, "the output is missing: give -o FILE.exr or FILE.png");
+    expect_failure({"render", scene, scene, "-o", out}, 2, "takes one scene");
+    expect_failure({"render", scene, "-o", out, "--size", "800"}, 2, "--size: '800' is no size");
+    expect_failure({"render", scene, "-o", out, "--size", "0x8"}, 2, "--size");
+    expect_failure({"render", scene, "-o", out, "--samples", "0"}, 2, "--samples");
+    expect_failure({"render", scene, "-o", out, "--tolerance", "0"}, 2, "--tolerance");
+    expect_failure({"render", scene, "-o", out, "--engine", "gl"}, 2, "--engine: 'gl'");
+    expect_failure({"render", scene, "-o", directory / "a.txt"}, 2, "a.txt");
+    expect_failure({"render", directory / "none.json", "-o", out}, 1, "none.json: does not exist");
+    expect_failure({"render", scene, "-o", out, "--max-memory", "1K"}, 1, "--max-memory");
+    write_bytes(scene, R"({"airlight_scene": 1, "media": [
+        {"type": "slab", "min": [0, 0, 0], "max": [1, 1, 1], "scattering": 1}]})");
+    expect_failure({"render", scene, "-o", out}, 1,
+                   "a.json: media[0], a slab, cannot be rendered yet");
+    EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+}  // namespace
+}  // namespace airlight

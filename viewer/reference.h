@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Single scattering done exactly: the pictures that approximations are measured against.
+//
+// Along a ray of view from o in direction w, up to the surface or the environment at distance d:
+//     L = T(o, d) L_d + int_0^d T(o, t) sum_m sigma_s,m(x) S_m(x) dt,  x = o + t w,
+//     S_m = sum_lights p_m I T(x, light) / |x - light|^2 + int p_m T(x, map) L_map d omega,
+// with the media's closed-form optical depths for T, [Sun05] sec. 3 and [Zhou07] sec. 3. A surface
+// sends L_d: the light of lights and map that reaches it through the media and past the objects,
+// and the light that the media scatter onto it once; light is not passed on between surfaces.
+//
+// What is deterministic: light of point lights on surfaces and in the media along rays, by adaptive
+// quadrature in the angle at which the light sees the ray, which takes its 1/d^2 away. What is
+// sampled: the map on surfaces (its bright pixels and the surface's lobe, weighed against each
+// other) and in media, and what media scatter onto surfaces (around the direction of each light,
+// where that light is 1/sin).
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "viewer/sample_stream.h"
+#include "viewer/world.h"
+
+namespace airlight {
+
+struct ReferenceOptions {
+    double quadrature = 1e-4;  ///< relative error of integrals along rays
+    /// Whether objects keep the light of lamps and map from parts of the media. The light that
+    /// reaches surfaces is always kept by objects.
+    bool shadows_in_media = true;
+};
+
+/// What was evaluated.
+struct ReferenceCounts {
+    std::uint64_t rays = 0;         ///< traced, shadow rays among them
+    std::uint64_t line_points = 0;  ///< points of media whose light was summed
+};
+
+class ReferenceRenderer {
+  public:
+    ReferenceRenderer(const World& world, const ReferenceOptions& options)
+        : world_(world), options_(options) {}
+
+    /// Radiance that comes to `origin` from a unit direction; one sample of what is sampled, whose
+    /// mean it is. Not negative, and finite unless the ray runs through a light.
+    glm::dvec3 radiance(const glm::dvec3& origin, const glm::dvec3& direction, SampleStream& stream,
+                        ReferenceCounts& counts) const;
+
+    /// Light of the point lights that media scatter towards `origin` along a ray: nothing of it is
+    /// sampled. `distance` in [0, inf].
+    glm::dvec3 airlight_of_lights(const glm::dvec3& origin, const glm::dvec3& direction,
+                                  double distance, ReferenceCounts& counts) const;
+
+  private:
+    glm::dvec3 airlight_of(const PointLight& light, const glm::dvec3& origin,
+                           const glm::dvec3& direction, double distance,
+                           ReferenceCounts& counts) const;
+    glm::dvec3 airlight_of_map(const glm::dvec3& origin, const glm::dvec3& direction,
+                               double distance, SampleStream& stream,
+                               ReferenceCounts& counts) const;
+    glm::dvec3 surface(const WorldHit& hit, const glm::dvec3& to_viewer, SampleStream& stream,
+                       ReferenceCounts& counts) const;
+    glm::dvec3 surface_of_map(const WorldHit& hit, const glm::dvec3& to_viewer,
+                              const glm::dvec3& from, SampleStream& stream,
+                              ReferenceCounts& counts) const;
+    glm::dvec3 surface_of_media(const WorldHit& hit, const glm::dvec3& to_viewer,
+                                const glm::dvec3& from, SampleStream& stream,
+                                ReferenceCounts& counts) const;
+    bool sees(const glm::dvec3& from, const glm::dvec3& to, ReferenceCounts& counts) const;
+    bool sees_map(const glm::dvec3& from, const glm::dvec3& direction,
+                  ReferenceCounts& counts) const;
+
+    const World& world_;
+    ReferenceOptions options_;
+};
+
+}  // namespace airlight

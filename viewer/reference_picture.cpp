@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/reference_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "viewer/camera.h"
+
+namespace airlight {
+namespace {
+
+// What a pixel has gathered: sums of its samples and of the squares of their differences from the
+// mean (Welford's recurrence), of the channel where these are largest.
+struct PixelSum {
+    glm::dvec3 mean{0}, squares{0};
+    std::uint32_t count = 0;
+
+    void add(const glm::dvec3& sample) {
+        ++count;
+        const glm::dvec3 before = sample - mean;
+        mean += before / double(count);
+        squares += before * (sample - mean);
+    }
+    double error() const {
+        if (count < 2) return 0;
+        const double largest = std::max({squares.x, squares.y, squares.z});
+        return std::sqrt(largest / (double(count) * (count - 1)));
+    }
+    double brightness() const { return std::max({mean.x, mean.y, mean.z}); }
+};
+
+void check(const ReferencePictureOptions& options) {
+    if (options.samples < 1 || options.samples > kLargestSamples) {
+        throw Error(ErrorCode::usage, fmt::format("the samples of a pixel must be 1 to {}, got {}",
+                                                  kLargestSamples, options.samples));
+    }
+    if (!(options.tolerance >= 0 && options.tolerance <= 1)) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("the tolerance must be in [0, 1], got {}", options.tolerance));
+    }
+}
+
+}  // namespace
+
+ReferencePicture render_reference(const World& world, const ReferencePictureOptions& options,
+                                  std::size_t max_memory, Progress* progress) {
+    check(options);
+    const Camera& camera = world.scene().camera;
+    const int width = options.width > 0 ? options.width : camera.width;
+    const int height = options.height > 0 ? options.height : camera.height;
+    const std::size_t pixels = checked_product(
+        {static_cast<std::size_t>(width), static_cast<std::size_t>(height)}, "the picture");
+    require_memory(checked_multiply(pixels, sizeof(PixelSum) + 12, "the picture"), max_memory,
+                   "the picture", world.scene().path);
+    const glm::dmat3 axes = camera_axes(camera);
+    const ReferenceRenderer renderer(world, options.reference);
+    std::vector<PixelSum> sums(pixels);
+    ReferencePicture result;
+
+    // Pixels of neighbours in a row.
+    constexpr std::size_t kBlock = 64;
+    const auto take_samples = [&](std::uint32_t most, double wanted) {
+        const auto of_block = [&](std::size_t begin, std::size_t end) {
+            ReferenceCounts counts;
+            for (std::size_t i = begin; i < end; ++i) {
+                PixelSum& sum = sums[i];
+                const double x = double(i % static_cast<std::size_t>(width));
+                const double y = double(i / static_cast<std::size_t>(width));
+                while (sum.count < most && !(sum.count >= kFirstSamples && sum.error() <= wanted)) {
+                    SampleStream stream(i, sum.count);
+                    const double dx = stream.next(), dy = stream.next();
+                    sum.add(renderer.radiance(
+                        camera.position,
+                        camera_direction(camera, axes, width, height, x + dx, y + dy), stream,
+                        counts));
+                }
+            }
+            if (progress) progress->tick(end - begin);
+            return counts;
+        };
+        const ReferenceCounts counts = ordered_reduce<ReferenceCounts>(
+            pixels, kBlock, {}, of_block, [](ReferenceCounts& all, const ReferenceCounts& part) {
+                all.rays += part.rays;
+                all.line_points += part.line_points;
+            });
+        result.counts.rays += counts.rays;
+        result.counts.line_points += counts.line_points;
+    };
+    const auto brightest = [&] {
+        double most = 0;
+        for (const PixelSum& sum : sums) most = std::max(most, sum.brightness());
+        return most;
+    };
+    const auto samples = static_cast<std::uint32_t>(options.samples);
+    if (options.tolerance > 0 && options.samples > kFirstSamples) {
+        take_samples(kFirstSamples, -1);
+        take_samples(samples, options.tolerance * brightest());
+    } else {
+        take_samples(samples, -1);
+    }
+
+    result.image = Image(width, height, 3);
+    const double level = brightest();
+    double squares = 0;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            result.image.pixels[3 * i + c] = static_cast<float>(sums[i].mean[static_cast<int>(c)]);
+        }
+        result.samples += sums[i].count;
+        const double error = level > 0 ? sums[i].error() / level : 0;
+        squares += error * error;
+        result.unfinished += options.tolerance > 0 && error > options.tolerance ? 1 : 0;
+    }
+    result.noise = std::sqrt(squares / double(pixels));
+    return result;
+}
+
+}  // namespace airlight

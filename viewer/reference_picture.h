@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures by viewer/reference.h.
+#pragma once
+
+#include <cstdint>
+
+#include "core/progress.h"
+#include "envmap/image.h"
+#include "viewer/reference.h"
+
+namespace airlight {
+
+struct ReferencePictureOptions {
+    ReferenceOptions reference;
+    int samples = 16;  ///< of each pixel at most, 1 … kLargestSamples
+    /// Standard error, relative to the brightest pixel, at which a pixel needs no more samples
+    /// than the first kFirstSamples; 0 makes all.
+    double tolerance = 0;
+    int width = 0, height = 0;  ///< pixels; 0: the camera's
+};
+
+inline constexpr int kLargestSamples = 1 << 20;
+inline constexpr int kFirstSamples = 8;
+
+struct ReferencePicture {
+    Image image;  ///< linear radiance, row 0 on top
+    ReferenceCounts counts;
+    std::uint64_t samples = 0;
+    /// Standard error of the pixels' means as their samples show it, root of the mean square, over
+    /// the brightest pixel.
+    double noise = 0;
+    std::uint64_t unfinished = 0;  ///< pixels above the tolerance
+};
+
+/// Pixels are means over their area, of samples that are the same for every number of threads.
+/// Counts pixels at `progress`, twice where there is a tolerance. Throws Error(usage) for options
+/// outside their domain, Error(memory) beyond max_memory.
+ReferencePicture render_reference(const World& world, const ReferencePictureOptions& options,
+                                  std::size_t max_memory = kDefaultMaxMemory,
+                                  Progress* progress = nullptr);
+
+}  // namespace airlight

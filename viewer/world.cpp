@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/world.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "core/error.h"
+#include "envmap/io.h"
+#include "prt/mesh_io.h"
+#include "prt/ray_scene.h"
+#include "viewer/environment_sampler.h"
+
+namespace airlight {
+namespace {
+
+Mesh placed(Mesh mesh, const glm::dmat4& transform) {
+    const glm::dmat3 linear(transform);
+    const glm::dmat3 of_normals = glm::transpose(glm::inverse(linear));
+    for (glm::dvec3& p : mesh.positions) p = linear * p + glm::dvec3(transform[3]);
+    for (glm::dvec3& n : mesh.normals) n = glm::normalize(of_normals * n);
+    if (glm::determinant(linear) < 0) {
+        for (glm::uvec3& triangle : mesh.triangles) std::swap(triangle.y, triangle.z);
+    }
+    return mesh;
+}
+
+// What the format of scenes has and no renderer does yet.
+void refuse_unknown(const Scene& scene) {
+    const auto refuse = [&](const std::string& what) {
+        throw Error(ErrorCode::data, what + " cannot be rendered yet", scene.path);
+    };
+    for (std::size_t i = 0; i < scene.media.size(); ++i) {
+        if (std::holds_alternative<SceneSlab>(scene.media[i].kind)) {
+            refuse(fmt::format("media[{}], a slab,", i));
+        }
+    }
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        if (std::holds_alternative<TabulatedMaterial>(scene.objects[i].material)) {
+            refuse(fmt::format("objects[{}].material, a tabulated one,", i));
+        }
+    }
+    if (scene.shafts) refuse("shafts");
+}
+
+}  // namespace
+
+World::World(const Scene& scene, const WorldOptions& options) : scene_(scene), media_(scene.media) {
+    refuse_unknown(scene);
+    MeshReadOptions read;
+    read.max_memory = options.max_memory;
+    for (const SceneObject& object : scene.objects) {
+        meshes_.push_back(placed(read_mesh(object.mesh.path, read), object.transform));
+    }
+    if (!meshes_.empty()) {
+        std::vector<const Mesh*> others;
+        for (std::size_t i = 1; i < meshes_.size(); ++i) others.push_back(&meshes_[i]);
+        RaySceneOptions rays;
+        rays.max_memory = options.max_memory;
+        rays_ = std::make_unique<RayScene>(meshes_[0], others, rays);
+    }
+    if (scene.environment) {
+        ReadOptions map;
+        map.max_memory = options.max_memory;
+        map.negative = NegativePolicy::clamp;
+        sampler_ = std::make_unique<EnvironmentSampler>(
+            read_image(scene.environment->file.path, map), scene.environment->rotation,
+            scene.environment->scale);
+    }
+}
+
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+std::size_t World::triangles() const {
+    std::size_t sum = 0;
+    for (const Mesh& mesh : meshes_) sum += mesh.triangles.size();
+    return sum;
+}
+
+std::optional<WorldHit> World::trace(const glm::dvec3& origin, const glm::dvec3& direction,
+                                     double distance) const {
+    if (!rays_) return {};
+    const std::optional<RayHit> found = rays_->find_nearest(origin, direction, distance);
+    if (!found) return {};
+    const Mesh& mesh = meshes_[found->mesh];
+    const glm::uvec3 corner = mesh.triangles[found->triangle];
+    const double u = found->u, v = found->v;
+    const auto between = [&](const std::vector<glm::dvec3>& values) {
+        return (1 - u - v) * values[corner.x] + u * values[corner.y] + v * values[corner.z];
+    };
+    WorldHit hit;
+    hit.object = found->mesh;
+    hit.position = between(mesh.positions);
+    hit.distance = glm::length(hit.position - origin);
+    const glm::dvec3 a = mesh.positions[corner.x];
+    hit.face =
+        glm::normalize(glm::cross(mesh.positions[corner.y] - a, mesh.positions[corner.z] - a));
+    if (glm::dot(hit.face, direction) > 0) hit.face = -hit.face;
+    hit.normal = glm::normalize(between(mesh.normals));
+    // Normals of corners that cancel say nothing.
+    if (!(std::abs(glm::dot(hit.normal, hit.normal) - 1) < 1e-6)) hit.normal = hit.face;
+    if (glm::dot(hit.normal, hit.face) < 0) hit.normal = -hit.normal;
+    return hit;
+}
+
+bool World::is_blocked(const glm::dvec3& from, const glm::dvec3& to) const {
+    return rays_ && rays_->is_blocked(from, to);
+}
+
+glm::dvec3 World::lifted(const WorldHit& hit) const {
+    return hit.position + rays_->lift(hit.position) * hit.face;
+}
+
+glm::dvec3 World::environment(const glm::dvec3& direction) const {
+    return sampler_ ? sampler_->radiance(direction) : glm::dvec3(0);
+}
+
+}  // namespace airlight

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene with its files read: what rays meet.
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/checked.h"
+#include "prt/mesh.h"
+#include "viewer/scene.h"
+#include "viewer/scene_media.h"
+
+namespace airlight {
+
+class EnvironmentSampler;
+class RayScene;
+
+/// Where a ray meets an object.
+struct WorldHit {
+    std::size_t object = 0;
+    double distance = 0;
+    glm::dvec3 position{0};
+    glm::dvec3 face{0};    ///< unit normal of the triangle, on the side of the ray
+    glm::dvec3 normal{0};  ///< interpolated between the corners, on the side of `face`
+};
+
+struct WorldOptions {
+    std::size_t max_memory = kDefaultMaxMemory;
+};
+
+/// Immutable once built; all functions may be called from any thread.
+class World {
+  public:
+    /// Reads meshes and the environment map. Throws what their readers throw, naming the file, and
+    /// Error(data) for slabs, tabulated materials and shafts, which are not rendered yet.
+    explicit World(const Scene& scene, const WorldOptions& options = {});
+    ~World();
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+
+    const Scene& scene() const { return scene_; }
+    const SceneMedia& media() const { return media_; }
+    std::size_t triangles() const;
+
+    /// The nearest object within `distance` along a unit direction.
+    std::optional<WorldHit> trace(const glm::dvec3& origin, const glm::dvec3& direction,
+                                  double distance) const;
+    /// Whether an object lies between two points.
+    bool is_blocked(const glm::dvec3& from, const glm::dvec3& to) const;
+    /// Where rays that leave a point of a surface begin: lifted off it on the side of `face`.
+    glm::dvec3 lifted(const WorldHit& hit) const;
+
+    /// Radiance of the environment in a direction, black without one: the map's pixel, turned and
+    /// scaled.
+    glm::dvec3 environment(const glm::dvec3& direction) const;
+    /// Null without an environment.
+    const EnvironmentSampler* sampler() const { return sampler_.get(); }
+
+  private:
+    Scene scene_;
+    SceneMedia media_;
+    std::vector<Mesh> meshes_;  ///< in world coordinates
+    std::unique_ptr<RayScene> rays_;
+    std::unique_ptr<EnvironmentSampler> sampler_;
+};
+
+}  // namespace airlight
