@@ -11,7 +11,7 @@ namespace airlight::detail {
 namespace {
 
 // Directions that wait to be summed.
-constexpr std::size_t kPending = 16 << 10;
+constexpr std::size_t kPending = 6 << 10;
 
 }  // namespace
 
