@@ -27,12 +27,13 @@ required="
     libxxhash-dev
     nlohmann-json3-dev
 "
-# blender-data: the environment maps of the demo. libsharp-dev: the transforms that the benchmark is
+# blender-data, glmark2-data: environment maps and a mesh of the demo. libsharp-dev: the transforms that the benchmark is
 # held against. clang: fuzzing. fonts-dejavu-core: labels on contact sheets.
 optional="
     blender-data
     clang
     fonts-dejavu-core
+    glmark2-data
     libsharp-dev
 "
 
