@@ -10,7 +10,10 @@
 #include "prt/prt_match.h"
 #include "prt/prt_reader.h"
 #include "prt/shading.h"
+#include "sh/dering.h"
+#include "sh/index.h"
 #include "sh/project.h"
+#include "sh/window.h"
 #include "viewer/mesh_picture.h"
 
 namespace airlight {
@@ -19,6 +22,17 @@ namespace {
 constexpr float kAlbedo = 0.6f;
 constexpr double kVerticalFov = 45 * kPi / 180;
 constexpr int kGap = 4;
+
+// Light that is nowhere negative lights nothing negatively, whatever hides it: the transfer of a
+// vertex stands for a function that is not negative, either. So shadows hold no black patches.
+std::vector<double> light_of(const Image& map, int order) {
+    std::vector<double> light =
+        project_latlong(map.pixels.data(), map.height, map.width, map.channels, order);
+    const std::size_t size = sh_count(order);
+    bool positive = order <= kLargestAutomaticOrder;
+    for (std::size_t c = 0; c < 3; ++c) positive = positive && light[c * size] > 0;
+    return positive ? dering(DeringMethod::nearest, order, 3, light.data()) : light;
+}
 
 void parse_view(const std::string& text, SheetMeshRequest& request) {
     const std::size_t comma = text.find(',');
@@ -70,8 +84,7 @@ SheetMesh::SheetMesh(const SheetMeshRequest& request, std::size_t max_memory)
 }
 
 Image SheetMesh::picture(const Image& map, const Image& tile) const {
-    const std::vector<double> light =
-        project_latlong(map.pixels.data(), map.height, map.width, map.channels, order_);
+    const std::vector<double> light = light_of(map, order_);
     std::vector<float> radiance(3 * mesh_.positions.size());
     shade_transfer({order_, mesh_.positions.size(), transfer_.data()},
                    sh_light(order_, light.data()), glm::vec3(kAlbedo), radiance.data());

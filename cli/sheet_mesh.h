@@ -32,7 +32,7 @@ class SheetMesh {
     SheetMesh(const SheetMeshRequest& request, std::size_t max_memory);
 
     /// `map` above the mesh, as grey clay (albedo 0.6) that the map lights with the order of the
-    /// transfer; in the background the map itself. `width` pixels wide.
+    /// transfer, de-ringed where it must be; in the background the map itself. `width` pixels wide.
     Image picture(const Image& map, const Image& tile) const;
 
   private:

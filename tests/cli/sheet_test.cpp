@@ -76,6 +76,19 @@ TEST_F(SheetMesh, IsSeenFromTheSideAskedFor) {
     EXPECT_LT(behind, grey(1, 24) - 50);
 }
 
+// Order 3 of one lamp is negative 143 degrees from it, and so is what it lights there.
+TEST_F(SheetMesh, HasNoBlackPatchesWhereALampRings) {
+    bake();
+    Image map(64, 32, 3);
+    std::fill(map.pixels.begin(), map.pixels.end(), 0.01f);
+    for (int c = 0; c < 3; ++c) map.at(16, 32, c) = 1e4f;
+    WriteOptions replace;
+    replace.force = true;
+    write_image(map_, map, replace);
+    ASSERT_EQ(run(call({"--prt", prt_, "--mesh", mesh_, "--view", "143,0"})).status, 0);
+    EXPECT_GT(grey(32, 24), 60);
+}
+
 TEST_F(SheetMesh, NeedsTheWholeTransferOfThatMesh) {
     const std::vector<std::string> both = {"--prt", prt_, "--mesh", mesh_};
     const std::string pair = "a mesh takes both --prt FILE.prt and --mesh MESH";
