@@ -5,6 +5,7 @@
 // and nothing else; ratios are to it, medians over the rounds. With --vertices 2000 the rows lie in
 // the second level of cache, with 400000 in memory. Rows are those of surfaces that face anywhere.
 #include <fmt/format.h>
+#include <hwy/targets.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -210,7 +211,13 @@ int main(int argc, char** argv) {
     app.add_option("--order", orders)->check(CLI::Range(1, 10));
     app.add_option("--vertices", counts)->check(CLI::Range(1, 10000000));
     app.add_option("--rounds", rounds)->check(CLI::Range(1, 1000));
+    bool avx2 = false;
+    app.add_flag("--avx2", avx2, "AVX2 where there is more");
     CLI11_PARSE(app, argc, argv);
+    if (avx2) {
+        hwy::SetSupportedTargetsForTest(HWY_AVX2);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    }
     const airlight::ThreadLimit one(1);
     for (const int order : orders) {
         for (const std::size_t count : counts) airlight::time_all(order, count, rounds);
