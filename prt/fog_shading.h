@@ -24,8 +24,9 @@
 //     fitted2   2.5e-4  1e-6    2.6e-3  6.2e-3  5.3e-3  1e-6    1.3e-2    8.8 ns    23 ns
 //     fitted3   1.3e-5  1.2e-4  2.7e-4  1.5e-4  6.9e-4  8.2e-4  4.9e-4   10.5 ns    27 ns
 //     bands     6e-7    1e-6    2e-6    8e-6    9e-6    4e-6    9e-7      6.1 ns    48 ns
-// So `bands` is the most exact and as cheap to shade with as eq. 27 (with AVX2 8.0 ns, factored 7.6,
-// clear 5.6): a weight for every degree costs no more than another light. The others are for shaders that hold two or four lights and as many weights.
+// So `bands` is the most exact and as cheap to shade with as eq. 27 (with AVX2 8.0 ns,
+// factored 7.6, clear 5.6): a weight for every degree costs no more than another light. The others
+// are for shaders that hold two or four lights and as many weights.
 //
 // T = 0 gives the clear result, to the bit except for bands and exact, which sum in another order
 // (1e-7). T = inf gives 0. Negative and NaN T give NaN for their vertex.
