@@ -28,8 +28,8 @@
 // factored 7.6, clear 5.6): a weight for every degree costs no more than another light. The others
 // are for shaders that hold two or four lights and as many weights.
 //
-// T = 0 gives the clear result, to the bit except for bands and exact, which sum in another order
-// (1e-7). T = inf gives 0. Negative and NaN T give NaN for their vertex.
+// T = 0 gives the clear result, to the bit except for bands and exact, which sum in another order.
+// T = inf gives 0. Negative and NaN T give NaN for their vertex.
 //
 // Deviates: eq. 27 takes Lambda_l at T = 1 for all T. Its scattered light is too weak below and too
 // strong beyond, by a third at T = 2 and several times from 4 on.

@@ -28,9 +28,9 @@
 
 namespace airlight {
 
-/// The rungs; both give the same number but for rounding (3e-7 of |L| |V| |B|). Cost per vertex of
-/// order 4, 5, 6, three channels, the lobe's coefficients included, one thread with AVX-512
-/// (bench/shading_bench.cpp):
+/// The rungs; both give the same number but for rounding (sh/product.h, sh/product_matrix.h). Cost
+/// per vertex of order 4, 5, 6, three channels, the lobe's coefficients included, one thread with
+/// AVX-512 (bench/shading_bench.cpp):
 ///     product   11, 27, 53 ns     in fog by bands 1 ns more, for a light of any kind
 ///     matrix    36, 64, 101 ns    one channel alone would take about a third
 /// with AVX2 16, 37, 63 and 38, 70, 120 ns.

@@ -42,10 +42,10 @@ struct VertexRows {
 /// [Sloan02] sec. 4). The orders of light and transfer may differ: what one of them lacks is 0. A
 /// white sky of radiance 1 gives ambient occlusion times the albedo.
 ///
-/// Sums run in float: error 3e-7 of sum |t L| up to order 13 (measured). Cost on one thread with
-/// AVX-512 (bench/shading_bench.cpp), rows in cache: 2.4, 3.8, 4.6 ns per vertex for order 4, 5, 6,
-/// three channels, with the vertices in the lanes; 5.3, 6.4, 7.2 with the coefficients in them.
-/// AVX2: 2.6, 4.2, 5.6 ns. From memory, 1.3 to 1.7 times the time of reading the rows.
+/// Sums run in float: error under 1e-6 of sum |t L| up to order 13 (a test). Cost on one thread
+/// with AVX-512 (bench/shading_bench.cpp), rows in cache: 2.4, 3.8, 4.6 ns per vertex for order 4,
+/// 5, 6, three channels, with the vertices in the lanes; 5.3, 6.4, 7.2 with the coefficients in
+/// them. AVX2: 2.6, 4.2, 5.6 ns. From memory, 1.3 to 1.7 times the time of reading the rows.
 void shade_transfer(const VertexRows& transfer, const ShLight& light, const glm::vec3& albedo,
                     float* radiance);
 
