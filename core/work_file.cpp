@@ -61,6 +61,7 @@ WorkFile::WorkFile(std::string target, const std::string& suffix, bool force)
     try {
         // That owner may also have made the target meanwhile.
         detail::inspect_target(target_, force_);
+        if (!kept_) detail::sync_directory(directory_, target_);
     } catch (...) {
         if (!kept_) unlink(path_.c_str());
         throw;

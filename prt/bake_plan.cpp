@@ -119,7 +119,7 @@ std::string BakePlan::part_report(int pass) const {
     report.program = job_->program;
     report.tables = tables(pass);
     report.notes = job_->notes;
-    report.occluders = job_->scene.meshes.size() > 1;
+    report.occluders = job_->scene.meshes.size() > 1 || job_->scene.rays.ground_height.has_value();
     return to_json(report);
 }
 

@@ -33,7 +33,7 @@ struct PartReport {
     std::string program;
     std::vector<PrtTable> tables;    ///< of the result
     std::vector<std::string> notes;  ///< for its report
-    bool occluders = false;
+    bool occluders = false;          ///< whether anything but the mesh hides light
 };
 
 std::string to_json(const PartReport& report);

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "prt/aim_rays.h"
 #include "prt/embree_scene.h"
 #include "prt/mesh_io.h"
@@ -247,7 +248,11 @@ RayScene::RayScene(const Mesh& mesh, const std::vector<const Mesh*>& occluders,
             add_mesh(scene, *occluders[i], centre_, scale_, static_cast<unsigned>(i + 1));
         report_.triangles += occluders[i]->triangles.size();
     }
+    // A signal ends the building of the tree, too (core/interrupt.h).
+    rtcSetSceneProgressMonitorFunction(
+        scene.scene, [](void*, double) { return noted_signal() == 0; }, nullptr);
     rtcCommitScene(scene.scene);
+    throw_if_interrupted();
     check(scene);
     report_.bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, scene.bytes));
     report_.peak_bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, scene.peak_bytes));
