@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -42,6 +43,18 @@ BakeJob job_of(const BakeRequest& request, const std::vector<Mesh>& meshes,
     job.bake = request.bake;
     job.bounces = request.bounces;
     for (const PrtKind kind : request.kinds) job.tables.push_back({kind, request.type});
+    if (request.bake.method == BakeMethod::adaptive) {
+        const auto kept = [&](PrtKind kind) {
+            return std::count(request.kinds.begin(), request.kinds.end(), kind) > 0;
+        };
+        if (kept(PrtKind::visibility)) {
+            job.tables.push_back({PrtKind::visibility_error, PrtType::float32});
+        }
+        if (kept(PrtKind::transfer)) {
+            job.tables.push_back({PrtKind::transfer_error, PrtType::float32});
+        }
+        job.tables.push_back({PrtKind::ray_count, PrtType::uint32});
+    }
     job.program = "airlight " AIRLIGHT_VERSION;
     job.notes = notes_of(read);
     return job;
@@ -82,7 +95,10 @@ void print_report(const BakeRequest& request, const BakeJob& job, const BakeRunR
                                    {"vertices", job.scene.meshes[0]->positions.size()},
                                    {"triangles", report.scene.triangles},
                                    {"order", job.bake.order},
+                                   {"method", method_name(kBakeMethods, job.bake.method)},
+                                   {"tolerance", job.bake.tolerance},
                                    {"rays", report.counts.rays},
+                                   {"unmet_vertices", report.counts.unmet},
                                    {"bounces", job.bounces},
                                    {"blocked", report.counts.blocked},
                                    {"mostly_blocked_vertices", report.counts.mostly_blocked},
@@ -102,6 +118,7 @@ void print_report(const BakeRequest& request, const BakeJob& job, const BakeRunR
 }
 
 void run_bake(BakeRequest request, const CommonOptions& common) {
+    resolve_bake_method(request);
     check_bake_request(request, common.force);
     const auto start = std::chrono::steady_clock::now();
     request.read.max_memory = request.scene.max_memory = common.max_memory;
@@ -128,6 +145,7 @@ Command declare_bake(CLI::App& program) {
         "Precompute how the vertices of a mesh see and reflect distant light",
         "  airlight bake bunny.obj -o bunny.prt\n"
         "  airlight bake statue.ply -o statue.prt --order 4 --rays 4096 --ground 0\n"
+        "  airlight bake statue.ply -o statue.prt --tolerance 1e-3\n"
         "  airlight bake cup.obj -o cup.prt --bounces 3 --albedo 0.7\n"
         "  airlight bake chair.obj -o chair.prt --occluder room.obj --bounces 2 --albedo 0.5,0.8\n"
         "  airlight bake statue.ply -o part3.prt --shard 3/8\n"

@@ -9,6 +9,7 @@
 #include "cli/numbers.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "prt/adaptive_hemisphere.h"
 #include "prt/bake_plan.h"
 
 namespace airlight {
@@ -81,6 +82,30 @@ void parse_shard(const std::string& text, BakeRequest& request) {
 
 }  // namespace
 
+void resolve_bake_method(BakeRequest& request) {
+    BakeOptions& bake = request.bake;
+    const BakeMethod fitting = bake.tolerance > 0 ? BakeMethod::adaptive : BakeMethod::fibonacci;
+    bake.method = request.method.value_or(fitting);
+    const bool adaptive = bake.method == BakeMethod::adaptive;
+    if (adaptive && bake.tolerance == 0) {
+        throw Error(ErrorCode::usage, "adaptive needs a --tolerance to stop at", "--method");
+    }
+    if (!adaptive && bake.tolerance > 0) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("{} takes a fixed number of --rays and estimates no error: leave "
+                                "--tolerance out, or take adaptive",
+                                method_name(kBakeMethods, bake.method)),
+                    "--method");
+    }
+    if (adaptive && request.rays.value_or(kAdaptiveBakeRays) < kFewestAdaptiveRays) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("must be {} or more with --tolerance, got {}", kFewestAdaptiveRays,
+                                *request.rays),
+                    "--rays");
+    }
+    bake.rays = request.rays.value_or(adaptive ? kAdaptiveBakeRays : BakeOptions().rays);
+}
+
 void check_bake_request(const BakeRequest& request, bool force) {
     if (request.inputs.size() != 1) {
         throw Error(ErrorCode::usage, request.inputs.empty()
@@ -118,14 +143,25 @@ void add_bake_flags(const Command& command, BakeRequest& request) {
              [&](const std::string& text) {
                  request.bake.order = parse_integer(text, "--order", 1, kLargestBakeOrder);
              });
-    add_flag(command, "--rays", "N", "Directions of the hemisphere of each vertex (default: 1024)",
+    add_flag(command, "--rays", "N",
+             "Directions of the hemisphere of each vertex (default: 1024); with --tolerance the\n"
+             "most that a vertex may take, about (default: 16384)",
              [&](const std::string& text) {
-                 request.bake.rays = parse_integer(text, "--rays", 1, kLargestBakeRays);
+                 request.rays = parse_integer(text, "--rays", 1, kLargestBakeRays);
              });
+    add_flag(
+        command, "--tolerance", "E",
+        "Each vertex takes rays until the estimate of its error, relative to an open\n"
+        "hemisphere, is E or less in the visibility and transfer that are kept; the file\n"
+        "records the estimates",
+        [&](const std::string& text) {
+            request.bake.tolerance = parse_number(text, "--tolerance", {kSmallestBakeTolerance, 1});
+        });
     add_flag(command, "--method", "NAME",
-             fmt::format("How directions are chosen: {} (default: fibonacci)",
+             fmt::format("How directions are chosen: {} (default: fibonacci,\nwith --tolerance "
+                         "adaptive)",
                          fmt::join(bake_methods(), ", ")),
-             [&](const std::string& text) { request.bake.method = parse_method(text); });
+             [&](const std::string& text) { request.method = parse_method(text); });
     add_flag(command, "--bounces", "N",
              "Times that light goes on between parts of the mesh, in transfer (default: 0)",
              [&](const std::string& text) {

@@ -13,10 +13,11 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "prt/adaptive_hemisphere.h"
+#include "prt/blocked_rays.h"
 #include "prt/blocked_sums.h"
 #include "prt/hemisphere.h"
 #include "prt/morton.h"
-#include "prt/random_hemisphere.h"
 #include "prt/reflected_light.h"
 #include "sh/index.h"
 #include "sh/lobes.h"
@@ -34,6 +35,29 @@ void check_options(const BakeOptions& options) {
     if (options.rays < 1 || options.rays > kLargestBakeRays) {
         throw Error(ErrorCode::usage, fmt::format("the rays per vertex must be 1 to {}, got {}",
                                                   kLargestBakeRays, options.rays));
+    }
+    if (options.method != BakeMethod::adaptive) {
+        if (options.tolerance == 0) return;
+        throw Error(ErrorCode::usage, fmt::format("the method {} takes no tolerance, adaptive does",
+                                                  method_name(kBakeMethods, options.method)));
+    }
+    if (options.rays < kFewestAdaptiveRays) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("the adaptive method takes {} rays per vertex or more, got {}",
+                                kFewestAdaptiveRays, options.rays));
+    }
+    if (!(options.tolerance >= kSmallestBakeTolerance && options.tolerance <= 1)) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("the tolerance of the adaptive method must be {:g} to 1, got {:g}",
+                                kSmallestBakeTolerance, options.tolerance));
+    }
+}
+
+void check_rows(const BakeOptions& options, const BakeRows& rows) {
+    if (options.method == BakeMethod::adaptive) return;
+    if (rows.visibility_error || rows.transfer_error) {
+        throw Error(ErrorCode::usage, fmt::format("the method {} does not estimate its error",
+                                                  method_name(kBakeMethods, options.method)));
     }
 }
 
@@ -64,86 +88,29 @@ void check_reflectors(const std::vector<Reflector>& reflectors) {
     }
 }
 
-// Directions that are traced at a time: their arrays stay in the cache.
-constexpr std::size_t kDirections = detail::BlockedSums::kMostSamples;
 // Vertices of a task, and rays where these are many: tens of milliseconds.
 constexpr std::size_t kVertices = 128;
 constexpr std::size_t kTaskRays = std::size_t{1} << 17;
 
 // What all vertices share.
 struct Plan {
-    explicit Plan(const BakeOptions& options)
-        : order(options.order),
-          rays(static_cast<std::size_t>(options.rays)),
-          method(options.method),
+    explicit Plan(const BakeOptions& given)
+        : options(given),
+          order(options.order),
           // The bent normal comes from degree 1.
           sum_order(std::max(2, options.order)),
-          fibonacci(fibonacci_hemisphere(method == BakeMethod::fibonacci ? rays : 0)),
-          weight(static_cast<float>(2 * kPi / options.rays)),
+          fibonacci(fibonacci_hemisphere(options.method == BakeMethod::fibonacci
+                                             ? static_cast<std::size_t>(options.rays)
+                                             : 0)),
           hemisphere(zonal_coefficients(phong_eigenvalues(0, sum_order))),
           cosine(zonal_coefficients(clamped_cosine_eigenvalues(options.order))) {
         for (double& value : cosine) value /= kPi;
     }
 
-    int order;
-    std::size_t rays;
-    BakeMethod method;
-    int sum_order;
+    BakeOptions options;
+    int order, sum_order;
     HemisphereDirections fibonacci;
-    float weight;  // of each direction
     std::vector<double> hemisphere, cosine;
-};
-
-// The directions of one vertex after the other, and those that are blocked.
-class Rays {
-  public:
-    explicit Rays(const Plan& plan) : plan_(plan), hits_(kDirections) {
-        for (auto* values : {&x_, &y_, &z_}) values->resize(kDirections);
-        weight_.assign(kDirections, plan.weight);
-        if (plan.method == BakeMethod::fibonacci) return;
-        for (auto* values : {&drawn_.x, &drawn_.y, &drawn_.z}) values->resize(plan.rays);
-    }
-
-    void choose(std::uint32_t vertex) {
-        switch (plan_.method) {
-            case BakeMethod::fibonacci:
-                local_ = &plan_.fibonacci;
-                return;
-            case BakeMethod::owen_sobol:
-                owen_sobol_hemisphere(vertex, drawn_);
-                break;
-            case BakeMethod::stratified:
-                stratified_hemisphere(vertex, drawn_);
-                break;
-            case BakeMethod::random:
-                random_hemisphere(vertex, drawn_);
-                break;
-        }
-        local_ = &drawn_;
-    }
-
-    /// Those that are blocked of up to kDirections from `begin` on.
-    detail::Samples find_blocked(const RayScene& scene, const glm::vec3& origin,
-                                 const glm::mat3& frame, std::size_t begin) {
-        const float* const x = local_->x.data() + begin;
-        const float* const y = local_->y.data() + begin;
-        const float* const z = local_->z.data() + begin;
-        const std::size_t found = scene.find_blocked(
-            origin, frame, std::min(kDirections, plan_.rays - begin), x, y, z, hits_.data());
-        for (std::size_t h = 0; h < found; ++h) {
-            x_[h] = x[hits_[h]];
-            y_[h] = y[hits_[h]];
-            z_[h] = z[hits_[h]];
-        }
-        return {found, x_.data(), y_.data(), z_.data(), weight_.data()};
-    }
-
-  private:
-    const Plan& plan_;
-    HemisphereDirections drawn_;
-    const HemisphereDirections* local_ = nullptr;
-    AlignedVector<std::uint32_t> hits_;
-    AlignedVector<float> x_, y_, z_, weight_;
 };
 
 void write(std::size_t size, const double* values, float* out) {
@@ -173,45 +140,85 @@ bool needs_rays(const BakeRows& rows) {
     return rows.visibility || rows.transfer || rows.ambient_occlusion || rows.bent_normal;
 }
 
+// Which errors have to meet the tolerance: of visibility and transfer those that are kept, else of
+// the one that the by-products are moments of.
+AdaptiveOptions adaptive_options(const BakeOptions& options, const BakeRows& rows) {
+    AdaptiveOptions adaptive;
+    adaptive.order = options.order;
+    adaptive.tolerance = options.tolerance;
+    adaptive.most_rays = options.rays;
+    adaptive.visibility = rows.visibility || (!rows.transfer && rows.bent_normal);
+    adaptive.transfer = rows.transfer || !adaptive.visibility;
+    return adaptive;
+}
+
+// What the rays of a block of vertices found.
+struct Found {
+    Found(const Plan& plan, std::size_t count, bool with_transfer, bool reflects)
+        : sums(plan.sum_order, with_transfer, count),
+          rays(count),
+          dark(count),
+          reflected(reflects ? sh_count(plan.order) * count : 0) {}
+
+    detail::BlockedSums sums;
+    std::vector<std::size_t> rays;
+    std::vector<bool> dark;  // all of them were blocked
+    std::vector<double> reflected;
+};
+
+template <class Rays>
+void trace_block(Rays rays, const Plan& plan, const Mesh& mesh, const RayScene& scene,
+                 detail::ReflectedLight* light, const std::uint32_t* vertices, std::size_t count,
+                 const BakeRows& rows, Found& found, BakeReport& report) {
+    const std::size_t size = sh_count(plan.order);
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::uint32_t v = vertices[k];
+        const glm::dvec3 normal = glm::normalize(mesh.normals[v]);
+        const glm::vec3 origin = scene.origin(mesh.positions[v], normal);
+        const glm::mat3 frame(vertex_frame(normal, v));
+        const detail::BlockedReport each =
+            rays.trace(scene, v, origin, frame, [&](const detail::Samples& blocked) {
+                found.sums.add(k, frame, blocked);
+                if (light) light->add(origin, frame, blocked, found.reflected.data() + size * k);
+            });
+        found.rays[k] = each.rays;
+        found.dark[k] = each.blocked == each.rays;
+        if (rows.ray_count) rows.ray_count[k] = static_cast<std::uint32_t>(each.rays);
+        if (rows.blocked_count) rows.blocked_count[k] = static_cast<std::uint32_t>(each.blocked);
+        const AdaptiveEstimate& estimate = each.estimate;
+        if (rows.visibility_error) rows.visibility_error[k] = float(estimate.visibility);
+        if (rows.transfer_error) rows.transfer_error[k] = float(estimate.transfer);
+        report.rays += each.rays;
+        report.blocked += each.blocked;
+        report.mostly_blocked += 2 * each.blocked > each.rays ? 1 : 0;
+    }
+    found.sums.finish();
+}
+
 BakeReport bake_block(const Plan& plan, const Mesh& mesh, const RayScene& scene,
                       const std::vector<Reflector>& reflectors, const std::uint32_t* vertices,
                       std::size_t count, const BakeRows& rows) {
-    const std::size_t size = sh_count(plan.order), rays = plan.rays;
+    const std::size_t size = sh_count(plan.order);
     BakeReport report;
     report.vertices = count;
-    detail::BlockedSums sums(plan.sum_order, rows.transfer != nullptr, count);
     detail::ReflectedLight light(scene, reflectors, plan.order);
     const bool reflects = rows.transfer && light.any();
-    std::vector<bool> dark(count);
-    std::vector<double> reflected(reflects ? size * count : 0);
-    if (needs_rays(rows)) {
-        report.rays = count * rays;
-        Rays chosen(plan);
-        for (std::size_t k = 0; k < count; ++k) {
-            const std::uint32_t v = vertices[k];
-            const glm::dvec3 normal = glm::normalize(mesh.normals[v]);
-            const glm::vec3 origin = scene.origin(mesh.positions[v], normal);
-            const glm::mat3 frame(vertex_frame(normal, v));
-            chosen.choose(v);
-            std::size_t blocked = 0;
-            for (std::size_t begin = 0; begin < rays; begin += kDirections) {
-                const detail::Samples found = chosen.find_blocked(scene, origin, frame, begin);
-                sums.add(k, frame, found);
-                if (reflects) light.add(origin, frame, found, reflected.data() + size * k);
-                blocked += found.count;
-            }
-            dark[k] = blocked == rays;
-            if (rows.blocked_count) rows.blocked_count[k] = static_cast<std::uint32_t>(blocked);
-            report.blocked += blocked;
-            report.mostly_blocked += 2 * blocked > rays ? 1 : 0;
-        }
-        sums.finish();
-    } else if (rows.blocked_count) {
-        std::fill_n(rows.blocked_count, count, 0u);
+    Found found(plan, count, rows.transfer != nullptr, reflects);
+    const auto trace = [&](auto rays) {
+        trace_block(std::move(rays), plan, mesh, scene, reflects ? &light : nullptr, vertices,
+                    count, rows, found, report);
+    };
+    if (!needs_rays(rows)) {
+        if (rows.ray_count) std::fill_n(rows.ray_count, count, 0u);
+        if (rows.blocked_count) std::fill_n(rows.blocked_count, count, 0u);
+        if (rows.visibility_error) std::fill_n(rows.visibility_error, count, 0.0f);
+        if (rows.transfer_error) std::fill_n(rows.transfer_error, count, 0.0f);
+    } else if (plan.options.method == BakeMethod::adaptive) {
+        trace(detail::AdaptiveRays(adaptive_options(plan.options, rows)));
+    } else {
+        trace(detail::FixedRays(plan.options, plan.fibonacci));
     }
-    if (rows.ray_count) {
-        std::fill_n(rows.ray_count, count, static_cast<std::uint32_t>(report.rays / count));
-    }
+    const detail::BlockedSums& sums = found.sums;
     std::vector<double> row(sh_count(plan.sum_order));
     for (std::size_t k = 0; k < count; ++k) {
         const glm::dvec3 normal = glm::normalize(mesh.normals[vertices[k]]);
@@ -227,12 +234,13 @@ BakeReport bake_block(const Plan& plan, const Mesh& mesh, const RayScene& scene,
         if (rows.transfer) {
             for (std::size_t i = 0; i < size; ++i) {
                 row[i] -= sums.of_cosine(k)[i] / kPi;
-                if (reflects) row[i] += reflected[k * size + i];
+                if (reflects) row[i] += found.reflected[k * size + i];
             }
             write(size, row.data(), rows.transfer + k * size);
         }
         if (rows.ambient_occlusion || rows.bent_normal) {
-            write_moments(normal, dark[k], static_cast<double>(rays), sums.of_basis(k),
+            write_moments(normal, found.dark[k], static_cast<double>(found.rays[k]),
+                          sums.of_basis(k),
                           rows.ambient_occlusion ? rows.ambient_occlusion + k : nullptr,
                           rows.bent_normal ? rows.bent_normal + 3 * k : nullptr);
         }
@@ -255,8 +263,8 @@ BakeRows BakeRows::from(std::size_t row, int order) const {
     };
     const std::size_t size = sh_count(order);
     return {at(visibility, size),     at(transfer, size), at(unshadowed_transfer, size),
-            at(ambient_occlusion, 1), at(bent_normal, 3), at(ray_count, 1),
-            at(blocked_count, 1)};
+            at(ambient_occlusion, 1), at(bent_normal, 3), at(visibility_error, 1),
+            at(transfer_error, 1),    at(ray_count, 1),   at(blocked_count, 1)};
 }
 
 BakeReport bake_vertices(const Mesh& mesh, const RayScene& scene, const BakeOptions& options,
@@ -265,6 +273,7 @@ BakeReport bake_vertices(const Mesh& mesh, const RayScene& scene, const BakeOpti
     check_options(options);
     check_vertices(mesh, vertices, count);
     check_reflectors(reflectors);
+    check_rows(options, rows);
     const Plan plan(options);
     const auto bake_some = [&](std::size_t begin, std::size_t end) {
         const BakeReport report = bake_block(plan, mesh, scene, reflectors, vertices + begin,
@@ -272,7 +281,8 @@ BakeReport bake_vertices(const Mesh& mesh, const RayScene& scene, const BakeOpti
         if (progress) progress->tick(end - begin);
         return report;
     };
-    const std::size_t grain = std::clamp<std::size_t>(kTaskRays / plan.rays, 1, kVertices);
+    const std::size_t grain =
+        std::clamp<std::size_t>(kTaskRays / static_cast<std::size_t>(options.rays), 1, kVertices);
     return ordered_reduce(count, grain, BakeReport(), bake_some, add);
 }
 
@@ -285,6 +295,8 @@ BakeRows Bake::rows() {
             at(unshadowed_transfer),
             at(ambient_occlusion),
             at(bent_normal),
+            nullptr,
+            nullptr,
             nullptr,
             nullptr};
 }

@@ -59,26 +59,34 @@ namespace airlight {
 
 inline constexpr int kLargestBakeOrder = 10;
 inline constexpr int kLargestBakeRays = 1 << 20;
+/// Enough for any tolerance from 3e-4 on where borders are lines.
+inline constexpr int kAdaptiveBakeRays = 16384;
+inline constexpr double kSmallestBakeTolerance = 1e-6;
 
-/// How the directions of a vertex are chosen (prt/hemisphere.h, prt/random_hemisphere.h).
+/// How the directions of a vertex are chosen: a fixed number of them (prt/hemisphere.h,
+/// prt/random_hemisphere.h), or until an estimate of the error meets a tolerance
+/// (prt/adaptive_hemisphere.h).
 enum class BakeMethod {
     fibonacci,
     owen_sobol,
     stratified,
     random,
+    adaptive,
 };
 
 inline constexpr NamedMethod<BakeMethod> kBakeMethods[] = {
-    {BakeMethod::fibonacci, "fibonacci"},
-    {BakeMethod::owen_sobol, "owen-sobol"},
-    {BakeMethod::stratified, "stratified"},
-    {BakeMethod::random, "random"},
+    {BakeMethod::fibonacci, "fibonacci"},   {BakeMethod::owen_sobol, "owen-sobol"},
+    {BakeMethod::stratified, "stratified"}, {BakeMethod::random, "random"},
+    {BakeMethod::adaptive, "adaptive"},
 };
 
 struct BakeOptions {
-    int order = 6;    ///< 1 … kLargestBakeOrder
-    int rays = 1024;  ///< directions of each vertex, 1 … kLargestBakeRays
+    int order = 6;  ///< 1 … kLargestBakeOrder
+    /// Directions of each vertex, 1 … kLargestBakeRays; of the adaptive method about the most,
+    /// kFewestAdaptiveRays or more.
+    int rays = 1024;
     BakeMethod method = BakeMethod::fibonacci;
+    double tolerance = 0;  ///< of the adaptive method, [kSmallestBakeTolerance, 1]; else 0
 };
 
 /// Where the results of a run of vertices go, one row per vertex in the order in which they are
@@ -90,6 +98,10 @@ struct BakeRows {
     float* ambient_occlusion = nullptr;    ///< (vertices), in [0, 1]
     /// (vertices, 3), unit; the normal where no direction is free, or free ones cancel.
     float* bent_normal = nullptr;
+    /// (vertices): estimates of the adaptive method alone, of the errors of a row without reflected
+    /// light: |row - truth| / |row of an open hemisphere|.
+    float* visibility_error = nullptr;
+    float* transfer_error = nullptr;
     std::uint32_t* ray_count = nullptr;      ///< (vertices): rays that were asked for
     std::uint32_t* blocked_count = nullptr;  ///< (vertices): of these
 

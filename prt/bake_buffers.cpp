@@ -19,6 +19,10 @@ float** place_of(PrtKind kind, BakeRows& rows) {
             return &rows.ambient_occlusion;
         case PrtKind::bent_normal:
             return &rows.bent_normal;
+        case PrtKind::visibility_error:
+            return &rows.visibility_error;
+        case PrtKind::transfer_error:
+            return &rows.transfer_error;
         default:
             return nullptr;
     }

@@ -63,12 +63,12 @@ std::vector<PrtTable> BakePlan::tables(int pass) const {
 PrtKey BakePlan::key(int pass) const {
     const bool last = pass == last_pass();
     PrtKeyHash hash;
-    hash.add(last ? "airlight bake 2" : "airlight bake 2: pass");
+    hash.add(last ? "airlight bake 3" : "airlight bake 3: pass");
     hash.add_integer(mesh_keys_.size());
     for (const PrtKey& key : mesh_keys_) hash.add(key);
     hash.add_integer(static_cast<std::uint64_t>(job_->bake.order));
     hash.add_integer(static_cast<std::uint64_t>(job_->bake.rays));
-    hash.add(method_name(kBakeMethods, job_->bake.method));
+    hash.add(method_name(kBakeMethods, job_->bake.method)).add(job_->bake.tolerance);
     hash.add_integer(job_->scene.rays.ground_height ? 1 : 0);
     hash.add(job_->scene.rays.ground_height.value_or(0));
     hash.add_integer(static_cast<std::uint64_t>(pass));
@@ -100,6 +100,7 @@ PrtHeader BakePlan::part_header(int pass, std::uint32_t shard, std::uint32_t sha
     header.shard = shard;
     header.shards = shards;
     header.rays = static_cast<std::uint64_t>(job_->bake.rays);
+    header.tolerance = job_->bake.tolerance;
     header.key = key(pass);
     header.mesh = mesh_keys_[0];
     if (rows(pass) != orders_[0].size() || (pass != last_pass() && !reflects(0))) {

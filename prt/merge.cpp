@@ -38,6 +38,7 @@ void add(RayCounts& sum, const RayCounts& part) {
     sum.rays += part.rays;
     sum.blocked += part.blocked;
     sum.mostly_blocked += part.mostly_blocked;
+    sum.unmet += part.unmet;
 }
 
 /// Refuses parts that do not name every vertex once, and counts their rays.
@@ -157,6 +158,13 @@ std::vector<std::string> result_notes(const PartSet& set, const RayCounts& count
                         "should be seen from outside, its winding or normals may be turned",
                         counts.mostly_blocked, vertices));
     }
+    if (counts.unmet > 0) {
+        const PrtHeader& header = set.parts[0].header;
+        notes.push_back(
+            fmt::format("{} of {} vertices do not meet the tolerance {:g} with at most about {} "
+                        "rays each: their estimates are larger; --rays gives them more",
+                        counts.unmet, vertices, header.tolerance, header.rays));
+    }
     return notes;
 }
 
@@ -165,6 +173,8 @@ std::vector<std::string> result_notes(const PartSet& set, const RayCounts& count
 RayCounts count_rays(const PrtReader& part) {
     RayCounts counts;
     std::vector<std::uint32_t> rays, blocked;
+    std::vector<float> errors;
+    std::vector<bool> above;
     for_blocks(part.header(), [&](std::size_t first, std::size_t count) {
         rays.resize(count);
         blocked.resize(count);
@@ -175,6 +185,18 @@ RayCounts count_rays(const PrtReader& part) {
             counts.blocked += blocked[r];
             counts.mostly_blocked += std::uint64_t{blocked[r]} * 2 > rays[r] ? 1 : 0;
         }
+        above.assign(count, false);
+        for (const PrtKind kind : {PrtKind::visibility_error, PrtKind::transfer_error}) {
+            const auto& tables = part.header().tables;
+            const auto is_it = [&](const PrtTable& table) { return table.kind == kind; };
+            if (std::none_of(tables.begin(), tables.end(), is_it)) continue;
+            errors.resize(count);
+            part.read(kind, first, count, errors.data());
+            for (std::size_t r = 0; r < count; ++r) {
+                if (errors[r] > static_cast<float>(part.header().tolerance)) above[r] = true;
+            }
+        }
+        counts.unmet += static_cast<std::uint64_t>(std::count(above.begin(), above.end(), true));
     });
     return counts;
 }

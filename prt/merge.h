@@ -23,6 +23,9 @@ namespace airlight {
 struct RayCounts {
     std::uint64_t rays = 0, blocked = 0;
     std::uint64_t mostly_blocked = 0;  ///< rows more than half of whose rays are blocked
+    /// Rows whose visibility_error or transfer_error, where there are such tables, is above the
+    /// tolerance.
+    std::uint64_t unmet = 0;
 };
 
 /// Of the rows of a part; throws as PrtReader does.

@@ -72,14 +72,65 @@ TEST_F(BakeCommand, EveryMethodIsAnotherBake) {
     const RayScene scene(mesh);
     std::set<std::string> keys;
     for (const NamedMethod<BakeMethod>& each : kBakeMethods) {
-        ASSERT_EQ(run(call({"--method", std::string(each.name), "--force"})).status, 0);
-        PrtReader reader(path_);
         BakeOptions options;
         options.rays = 256;
         options.method = each.method;
+        std::vector<std::string> flags = {"--method", std::string(each.name), "--force"};
+        if (each.method == BakeMethod::adaptive) {
+            options.tolerance = 0.25;
+            flags.insert(flags.end(), {"--tolerance", "0.25"});
+        }
+        ASSERT_EQ(run(call(flags)).status, 0);
+        PrtReader reader(path_);
         EXPECT_EQ(reader.read_all(PrtKind::transfer), bake_mesh(mesh, scene, options).transfer);
         EXPECT_TRUE(keys.insert(to_text(reader.header().key)).second) << each.name;
     }
+}
+
+TEST_F(BakeCommand, AToleranceIsRecordedWithWhatEveryVertexTook) {
+    const std::vector<std::string> words = {"bake", mesh_,     "-o", path_,   "--tolerance",
+                                            "3e-3", "--order", "4",  "--json"};
+    const Outcome outcome = run(words);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const nlohmann::json report = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(report["method"], "adaptive");
+    EXPECT_EQ(report["unmet_vertices"], 0);
+    PrtReader reader(path_);
+    EXPECT_EQ(reader.header().tolerance, 3e-3);
+    EXPECT_EQ(reader.header().rays, 16384u);
+    std::uint64_t rays = 0;
+    for (std::size_t v = 0; v < reader.header().rows; ++v) {
+        std::uint32_t count = 0;
+        float seen = 0, sent = 0;
+        reader.read(PrtKind::ray_count, v, 1, &count);
+        reader.read(PrtKind::visibility_error, v, 1, &seen);
+        reader.read(PrtKind::transfer_error, v, 1, &sent);
+        rays += count;
+        EXPECT_LE(std::max(seen, sent), 3e-3f);
+        EXPECT_GT(std::min(seen, sent), 0.0f);
+    }
+    EXPECT_EQ(report["rays"], rays);
+    // Only the kinds that are kept have an estimate.
+    ASSERT_EQ(
+        run({"bake", mesh_, "-o", path_, "--tolerance", "3e-3", "--kind", "transfer", "--force"})
+            .status,
+        0);
+    EXPECT_FALSE(PrtReader(path_).find(PrtKind::visibility_error));
+    EXPECT_TRUE(PrtReader(path_).find(PrtKind::transfer_error));
+}
+
+TEST_F(BakeCommand, ATolerancePastTheRaysIsSaid) {
+    const std::string walls = directory_ / "walls.obj";
+    write_bytes(walls,
+                "v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 .1 -1\nv 3 .2 -1\nv -1 3 -1\n"
+                "f 1 2 3\nf 4 5 6\n");
+    const Outcome outcome =
+        run({"bake", walls, "-o", path_, "--tolerance", "1e-5", "--rays", "500", "--json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const nlohmann::json report = nlohmann::json::parse(outcome.out);
+    EXPECT_GT(report["unmet_vertices"], 0);
+    EXPECT_NE(outcome.err.find("do not meet the tolerance 1e-05"), std::string::npos)
+        << outcome.err;
 }
 
 TEST_F(BakeCommand, BouncesAddLightBetweenParts) {
@@ -161,6 +212,14 @@ TEST_F(BakeCommand, MistakesAreSaidInOneSentence) {
         refused(call({"--bounces", "1", "--albedo", albedo}), 2, "--albedo");
     }
     refused(call({"--bounces", "1", "--albedo", "0.5,0.5"}), 2, "--albedo: names 2 albedos");
+    refused(call({"--method", "adaptive"}), 2, "--method: adaptive needs a --tolerance");
+    refused(call({"--method", "fibonacci", "--tolerance", "1e-3"}), 2,
+            "--method: fibonacci takes a fixed number of --rays");
+    refused({"bake", mesh_, "-o", path_, "--tolerance", "1e-3", "--rays", "63"}, 2,
+            "--rays: must be 64 or more with --tolerance, got 63");
+    for (const char* tolerance : {"0", "2", "nan", "-1", "1e-7"}) {
+        refused(call({"--tolerance", tolerance}), 2, "--tolerance");
+    }
     refused(call({"--method", "guess"}), 2,
             "--method: 'guess' is no method; it can be fibonacci, owen-sobol, stratified");
     refused(call({"--kind", "glow"}), 2, "--kind: 'glow' is no kind");
