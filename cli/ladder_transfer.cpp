@@ -76,6 +76,18 @@ struct Measurement {
 std::vector<Rung> plan_rungs() {
     std::vector<Rung> rungs;
     for (std::size_t m = 0; m < std::size(kBakeMethods); ++m) {
+        if (kBakeMethods[m].method == BakeMethod::adaptive) {
+            // Below that the truth is not exact enough.
+            for (const double tolerance : {1e-2, 5e-3, 2e-3, 1e-3}) {
+                BakeOptions options;
+                options.order = kOrder;
+                options.method = BakeMethod::adaptive;
+                options.rays = kAdaptiveBakeRays;
+                options.tolerance = tolerance;
+                rungs.push_back({m, options});
+            }
+            continue;
+        }
         for (const int rays : {64, 256, 1024, 4096, kLongestRun}) {
             BakeOptions options;
             options.order = kOrder;

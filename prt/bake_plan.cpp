@@ -36,6 +36,12 @@ BakePlan::BakePlan(const BakeJob& job) : job_(&job) {
                         fmt::format("the albedo must be in [0, 1], got {}", albedo));
         }
     }
+    for (const PrtKind kind : {PrtKind::visibility_error, PrtKind::transfer_error}) {
+        if (job.bake.method == BakeMethod::adaptive || !has(job.tables, kind)) continue;
+        throw Error(
+            ErrorCode::usage,
+            fmt::format("a bake does not make {} unless by the method adaptive", prt_name(kind)));
+    }
     orders_.resize(job.scene.meshes.size());
     offsets_.resize(job.scene.meshes.size());
     for (std::size_t m = 0; m < job.scene.meshes.size(); ++m) {

@@ -46,7 +46,8 @@ struct BakeSegment {
 /// The plan of a job. Cheap but for the Morton orders, which the constructor makes.
 class BakePlan {
   public:
-    /// Throws Error: usage for bounces or albedos outside their domain;
+    /// Throws Error: usage for bounces or albedos outside their domain, and for tables of errors
+    /// that the method does not estimate;
     /// data for more than 2^32 - 1 rows. The job must outlive the plan.
     explicit BakePlan(const BakeJob& job);
 

@@ -343,6 +343,7 @@ TEST(Ladder, ChoicesOfDirectionsKeepTheirOrder) {
     EXPECT_LT(before["fibonacci"], before["owen-sobol"]);
     EXPECT_LT(before["owen-sobol"], before["stratified"]);
     EXPECT_LT(3 * before["stratified"], before["random"]);
+    EXPECT_LT(before["adaptive"], 1e-3);
     for (const char* plot : {"transfer", "transfer-rays", "visibility", "visibility-rays"}) {
         EXPECT_EQ(read_bytes(scratch / (plot + std::string(".svg"))).rfind("<svg ", 0), 0u);
     }

@@ -159,7 +159,9 @@ double open_norm(double exponent) {
 
 class AdaptiveTrust : public testing::Test {
   protected:
-    // Against 65536 rays, whose own error is 3e-4.
+    // Against 65536 rays, whose own error is 3e-4. Measured on five scanned and modelled meshes at
+    // tolerances of 1e-2 to 5e-4: 0 to 4 % of vertices over twice their estimate, estimates of 1.0
+    // to 1.9 times the error; with things thinner than cells, 0.6 to 1.2 times and up to 11 %.
     void expect_trust(const Mesh& mesh, const std::vector<const Mesh*>& occluders, double tolerance,
                       double largest_share_over_twice, double least, double most) {
         const RayScene scene(mesh, occluders);
