@@ -210,21 +210,31 @@ void print_errors(const Mesh& mesh, const RayScene& scene, BakeOptions options,
                   const std::vector<std::uint32_t>& vertices, int truth_rays) {
     const std::size_t size = vertices.size() * sh_count(options.order);
     std::vector<float> seen(size), sent(size), true_seen(size), true_sent(size);
+    std::uint64_t traced = 0;
     const auto bake = [&](int rays, std::vector<float>& visibility, std::vector<float>& transfer) {
         options.rays = rays;
         BakeRows rows;
         rows.visibility = visibility.data();
         rows.transfer = transfer.data();
-        return measure(
-            [&] { bake_vertices(mesh, scene, options, vertices.data(), vertices.size(), rows); });
+        return measure([&] {
+            traced =
+                bake_vertices(mesh, scene, options, vertices.data(), vertices.size(), rows).rays;
+        });
     };
     bake(truth_rays, true_seen, true_sent);
     fmt::print("\nrelative RMS error against {} rays\n{:>8}{:>14}{:>14}{:>20}\n", truth_rays,
                "rays", "visibility", "transfer", "CPU us per vertex");
-    for (int rays = 128; rays < truth_rays; rays *= 2) {
-        const double cpu = bake(rays, seen, sent).cpu;
-        fmt::print("{:8}{:14.5f}{:14.5f}{:20.1f}\n", rays, relative_rms(seen, true_seen),
-                   relative_rms(sent, true_sent), 1e6 * cpu / double(vertices.size()));
+    const auto print = [&](double cpu) {
+        fmt::print("{:8}{:14.5f}{:14.5f}{:20.1f}\n", traced / vertices.size(),
+                   relative_rms(seen, true_seen), relative_rms(sent, true_sent),
+                   1e6 * cpu / double(vertices.size()));
+    };
+    for (int rays = 128; rays < truth_rays; rays *= 2) print(bake(rays, seen, sent).cpu);
+    fmt::print("adaptive, to a tolerance of 1e-2, 3e-3, 1e-3, 5e-4\n");
+    options.method = BakeMethod::adaptive;
+    for (const double tolerance : {1e-2, 3e-3, 1e-3, 5e-4}) {
+        options.tolerance = tolerance;
+        print(bake(kAdaptiveBakeRays, seen, sent).cpu);
     }
 }
 

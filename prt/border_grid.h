@@ -73,6 +73,8 @@ class BorderGrid {
         /// a run is met by a node with the probability run / d only, this is what the runs that no
         /// node met are expected to amount to. At the ends of round shapes such runs are rare.
         std::vector<Area> hidden;
+
+        void clear();
     };
     /// What the borders tell now; all cells of levels below `finished` must have been cut.
     void collect(int finished, Result& result) const;

@@ -54,6 +54,13 @@ double BorderGrid::part(const Cell& cell, double* u, double* v) const {
     return 0.5 * twice;
 }
 
+void BorderGrid::Result::clear() {
+    pieces.clear();
+    doubts.clear();
+    bends.clear();
+    hidden.clear();
+}
+
 BorderGrid::Area BorderGrid::area_at(double x, double y, double area) const {
     const double unit = 1.0 / side_;
     return {static_cast<float>(x * unit), static_cast<float>(y * unit),
@@ -116,7 +123,7 @@ void BorderGrid::collect_hidden(int level, Result& result) const {
 }
 
 void BorderGrid::collect(int finished, Result& result) const {
-    result = {};
+    result.clear();
     for (int j = 0; j < coarse_; ++j) {
         for (int i = 0; i < coarse_; ++i) visit({0, i, j}, result);
     }
@@ -133,7 +140,7 @@ void BorderGrid::collect(int finished, Result& result) const {
 }
 
 void BorderGrid::count_nodes(int level, Result& result) const {
-    result = {};
+    result.clear();
     const int size = size_of(level);
     const double area = double(size) * size;
     for (int y = 0; y <= side_; y += size) {
