@@ -93,6 +93,9 @@ void run_render(const RenderRequest& request, const CommonOptions& common) {
     start = std::chrono::steady_clock::now();
     const int width = request.options.width > 0 ? request.options.width : scene.camera.width;
     const int height = request.options.height > 0 ? request.options.height : scene.camera.height;
+    ReferencePictureOptions options = request.options;
+    options.reference.quadrature =
+        0.1 * (options.tolerance > 0 ? options.tolerance : scene.tolerance);
     ReferencePicture picture;
     {
         ProgressOptions drawing;
@@ -100,7 +103,7 @@ void run_render(const RenderRequest& request, const CommonOptions& common) {
         const bool twice = request.options.tolerance > 0 && request.options.samples > kFirstSamples;
         Progress progress("render", (twice ? 2 : 1) * std::uint64_t(width) * std::uint64_t(height),
                           drawing);
-        picture = render_reference(world, request.options, common.max_memory, &progress);
+        picture = render_reference(world, options, common.max_memory, &progress);
     }
     const double render_seconds = seconds_since(start);
     if (picture.unfinished > 0) {
@@ -159,7 +162,7 @@ Command declare_render(CLI::App& program) {
              });
     add_flag(command, "--tolerance", "E",
              "Noise, relative to the brightest pixel, at which a pixel is done (default: take all "
-             "samples)",
+             "samples); integrals along rays are made to a tenth of it or of the scene's",
              [=](const std::string& text) {
                  request->options.tolerance = parse_number(text, "--tolerance", {1e-9, 1});
              });

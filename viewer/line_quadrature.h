@@ -22,12 +22,16 @@ struct LineQuadratureOptions {
     int most_panels = 200;  ///< it ends there, and `error` says how far it came
 };
 
-/// int f over the panels between ascending `breaks`, f: double -> glm::dvec3. Gauss-Kronrod rules
-/// of 7 and 15 nodes; the panel with the largest error is halved until the sum of all is within the
-/// larger of the two tolerances. f is not evaluated at breaks, so it may jump there.
+struct LinePanel {
+    double begin = 0, end = 0;
+};
+
+/// int f over panels, f: double -> glm::dvec3. Gauss-Kronrod rules of 7 and 15 nodes; the panel
+/// with the largest error is halved until the sum of all is within the larger of the two
+/// tolerances. f is not evaluated at the ends of panels, so it may jump there.
 template <class F>
-LineIntegral integrate_line(const F& f, const std::vector<double>& breaks,
-                            const LineQuadratureOptions& options = {}) {
+LineIntegral integrate_panels(const F& f, const std::vector<LinePanel>& parts,
+                              const LineQuadratureOptions& options = {}) {
     struct Panel {
         double a, b, error;
         glm::dvec3 value;
@@ -67,8 +71,9 @@ LineIntegral integrate_line(const F& f, const std::vector<double>& breaks,
         return Panel{a, b, half * std::min(error, difference), half * fine};
     };
     std::vector<Panel> panels;
-    for (std::size_t i = 1; i < breaks.size(); ++i) {
-        if (breaks[i - 1] < breaks[i]) panels.push_back(panel_of(breaks[i - 1], breaks[i]));
+    panels.reserve(parts.size() + 4);
+    for (const LinePanel& part : parts) {
+        if (part.begin < part.end) panels.push_back(panel_of(part.begin, part.end));
     }
     const auto sum = [&] {
         result.value = glm::dvec3(0);
@@ -94,6 +99,15 @@ LineIntegral integrate_line(const F& f, const std::vector<double>& breaks,
         std::push_heap(panels.begin(), panels.end());
     }
     return result;
+}
+
+/// The same over the panels between ascending `breaks`.
+template <class F>
+LineIntegral integrate_line(const F& f, const std::vector<double>& breaks,
+                            const LineQuadratureOptions& options = {}) {
+    std::vector<LinePanel> panels;
+    for (std::size_t i = 1; i < breaks.size(); ++i) panels.push_back({breaks[i - 1], breaks[i]});
+    return integrate_panels(f, panels, options);
 }
 
 }  // namespace airlight

@@ -7,24 +7,12 @@
 #include <limits>
 
 #include "viewer/environment_sampler.h"
-#include "viewer/line_quadrature.h"
 #include "viewer/material.h"
 
 namespace airlight {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-// sum_m sigma_s,m p_m at a point of a ray, for light that travels along `incoming`.
-glm::dvec3 scattering(const SceneMedia& media, const glm::dvec3& x, const glm::dvec3& incoming,
-                      const glm::dvec3& outgoing) {
-    const double cosine = std::clamp(glm::dot(incoming, outgoing), -1.0, 1.0);
-    glm::dvec3 sum(0);
-    for (const MediumPart& part : media.parts()) {
-        sum += part.albedo() * part.density(x) * part.phase().at_cosine(cosine);
-    }
-    return sum;
-}
 
 double largest(const glm::dvec3& v) {
     return std::max({v.x, v.y, v.z});
@@ -42,52 +30,6 @@ bool ReferenceRenderer::sees_map(const glm::dvec3& from, const glm::dvec3& direc
                                  ReferenceCounts& counts) const {
     ++counts.rays;
     return !world_.trace(from, direction, kInfinite);
-}
-
-// With s = t - foot the distance along the ray from its point next to the light, at the height h
-// above it, and s = h tan u: dt / (s^2 + h^2) = du / h.
-glm::dvec3 ReferenceRenderer::airlight_of(const PointLight& light, const glm::dvec3& origin,
-                                          const glm::dvec3& direction, double distance,
-                                          ReferenceCounts& counts) const {
-    const SceneMedia& media = world_.media();
-    const double foot = glm::dot(light.position - origin, direction);
-    const glm::dvec3 across = light.position - origin - foot * direction;
-    // A ray through the light diverges there; the rounding of coordinates keeps it off.
-    const double height = std::max(glm::length(across), 1e-9 * (1 + std::abs(foot)));
-    const auto angle_at = [&](double t) { return std::atan((t - foot) / height); };
-    std::vector<double> breaks;
-    for (const double t : media.marks(origin, direction, distance)) breaks.push_back(angle_at(t));
-    if (foot > 0 && foot < distance) breaks.push_back(0);
-    std::sort(breaks.begin(), breaks.end());
-    const auto integrand = [&](double u) {
-        const double t = foot + height * std::tan(u);
-        if (!(t > 0 && t < distance)) return glm::dvec3(0);
-        ++counts.line_points;
-        const glm::dvec3 x = origin + t * direction;
-        const glm::dvec3 to_light = light.position - x;
-        const double r = glm::length(to_light);
-        if (!(r > 0)) return glm::dvec3(0);
-        const glm::dvec3 scattered = scattering(media, x, -to_light / r, -direction);
-        if (!(largest(scattered) > 0)) return glm::dvec3(0);
-        if (options_.shadows_in_media && !sees(x, light.position, counts)) return glm::dvec3(0);
-        const glm::dvec3 depth =
-            media.depth(origin, direction, t) + media.depth(x, to_light / r, r);
-        return scattered * glm::dvec3(std::exp(-depth.x), std::exp(-depth.y), std::exp(-depth.z));
-    };
-    LineQuadratureOptions quadrature;
-    quadrature.relative = options_.quadrature;
-    return light.intensity / height * integrate_line(integrand, breaks, quadrature).value;
-}
-
-glm::dvec3 ReferenceRenderer::airlight_of_lights(const glm::dvec3& origin,
-                                                 const glm::dvec3& direction, double distance,
-                                                 ReferenceCounts& counts) const {
-    glm::dvec3 sum(0);
-    if (world_.media().empty()) return sum;
-    for (const PointLight& light : world_.scene().lights) {
-        sum += airlight_of(light, origin, direction, distance, counts);
-    }
-    return sum;
 }
 
 // Where on the ray: with the density of the first collision, were the whole depth spread evenly;
@@ -108,7 +50,7 @@ glm::dvec3 ReferenceRenderer::airlight_of_map(const glm::dvec3& origin, const gl
     const EnvironmentSample light = sampler->sample(choice_x, choice_y);
     if (!(light.pdf > 0)) return glm::dvec3(0);
     ++counts.line_points;
-    const glm::dvec3 scattered = scattering(media, x, -light.direction, -direction);
+    const glm::dvec3 scattered = this->scattered(x, -light.direction, -direction);
     if (options_.shadows_in_media && !sees_map(x, light.direction, counts)) return glm::dvec3(0);
     return scattered * media.transmittance(origin, direction, t) *
            media.transmittance(x, light.direction, world_.scene().environment->distance) *
@@ -150,7 +92,8 @@ glm::dvec3 ReferenceRenderer::surface_of_map(const WorldHit& hit, const glm::dve
 // Around a light the airlight is 1 / sin(gamma) bright, so gamma and the azimuth are drawn evenly:
 // the density is 1 / (2 pi^2 sin(gamma)).
 glm::dvec3 ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::dvec3& to_viewer,
-                                               const glm::dvec3& from, SampleStream& stream,
+                                               const glm::dvec3& from, const glm::dvec3& direct,
+                                               SampleStream& stream,
                                                ReferenceCounts& counts) const {
     if (world_.media().empty()) return glm::dvec3(0);
     const Material& material = world_.scene().objects[hit.object].material;
@@ -171,8 +114,9 @@ glm::dvec3 ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::d
             std::cos(gamma) * axis;
         const glm::dvec3 f = reflect(material, hit.normal, to_viewer, direction);
         if (!(largest(f) > 0) || !(glm::dot(direction, hit.face) > 0)) continue;
-        sum += f * airlight_of(light, from, direction, end_of(direction), counts) *
-               (2 * kPi * kPi * std::sin(gamma));
+        const glm::dvec3 weight = f * (2 * kPi * kPi * std::sin(gamma));
+        const double absolute = options_.quadrature * largest(sum + direct) / largest(weight);
+        sum += weight * airlight_of(light, from, direction, end_of(direction), absolute, counts);
     }
     if (world_.sampler()) {
         const LobeSample lobe = sample_lobe(material, hit.normal, to_viewer, stream);
@@ -200,7 +144,7 @@ glm::dvec3 ReferenceRenderer::surface(const WorldHit& hit, const glm::dvec3& to_
         sum += f * light.intensity / (r * r) * world_.media().transmittance(from, to_light / r, r);
     }
     sum += surface_of_map(hit, to_viewer, from, stream, counts);
-    return sum + surface_of_media(hit, to_viewer, from, stream, counts);
+    return sum + surface_of_media(hit, to_viewer, from, sum, stream, counts);
 }
 
 glm::dvec3 ReferenceRenderer::radiance(const glm::dvec3& origin, const glm::dvec3& direction,
@@ -211,12 +155,12 @@ glm::dvec3 ReferenceRenderer::radiance(const glm::dvec3& origin, const glm::dvec
     const double distance = hit ? hit->distance : environment ? environment->distance : kInfinite;
     const glm::dvec3 behind =
         hit ? surface(*hit, -direction, stream, counts) : world_.environment(direction);
-    glm::dvec3 sum = airlight_of_lights(origin, direction, distance, counts) +
-                     airlight_of_map(origin, direction, distance, stream, counts);
+    glm::dvec3 sum = airlight_of_map(origin, direction, distance, stream, counts);
     if (largest(behind) > 0) {
         sum += behind * world_.media().transmittance(origin, direction, distance);
     }
-    return sum;
+    return sum + airlight_of_lights(origin, direction, distance, counts,
+                                    options_.quadrature * largest(sum));
 }
 
 }  // namespace airlight

@@ -92,6 +92,7 @@ std::optional<RaySpan> clip_to_box(const SceneBox& box, const glm::dvec3& origin
 MediumPart::MediumPart(const SceneMedium& medium)
     : phase_(phase_of(medium.phase)), bounds_(medium.bounds) {
     std::visit(PartBuilder{shapes_, tree_, colour_, albedo_}, medium.kind);
+    if (!bounds_ && std::holds_alternative<SceneUniform>(medium.kind)) everywhere_ = colour_;
 }
 
 template <class OfShape>
@@ -106,6 +107,7 @@ glm::dvec3 MediumPart::by_channel(const OfShape& of_shape) const {
 }
 
 glm::dvec3 MediumPart::density(const glm::dvec3& x) const {
+    if (everywhere_) return *everywhere_;
     if (bounds_ && !contains(*bounds_, x)) return glm::dvec3(0);
     if (tree_) {
         double sum = 0;
@@ -117,6 +119,7 @@ glm::dvec3 MediumPart::density(const glm::dvec3& x) const {
 
 glm::dvec3 MediumPart::depth(const glm::dvec3& origin, const glm::dvec3& direction,
                              double distance) const {
+    if (everywhere_ && std::isfinite(distance)) return *everywhere_ * distance;
     glm::dvec3 from = origin;
     if (bounds_) {
         const std::optional<RaySpan> span = clip_to_box(*bounds_, origin, direction, distance);
@@ -132,7 +135,7 @@ glm::dvec3 MediumPart::depth(const glm::dvec3& origin, const glm::dvec3& directi
 }
 
 void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-                      std::vector<double>& marks) const {
+                      std::vector<double>& marks, double least) const {
     const auto add = [&](double at) {
         if (at > 0 && at < distance) marks.push_back(at);
     };
@@ -145,7 +148,9 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
     const auto mark_blob = [&](const GaussianBlob& blob) {
         const GaussianPass pass = gaussian_pass(blob.center, origin, direction);
         // Beyond, it is no more than e^-9 of itself.
-        if (!(blob.scale * pass.rho_perp < 3)) return;
+        const double off = blob.scale * pass.rho_perp;
+        if (!(off < 3)) return;
+        if (blob.amplitude * std::sqrt(kPi) * std::exp(-off * off) < least * blob.scale) return;
         for (const double step : {-1.5, 0.0, 1.5}) add(pass.m_proj + step / blob.scale);
     };
     if (tree_) {
@@ -162,6 +167,14 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
 SceneMedia::SceneMedia(const std::vector<SceneMedium>& media) {
     for (const SceneMedium& medium : media) {
         if (!std::holds_alternative<SceneSlab>(medium.kind)) parts_.emplace_back(medium);
+    }
+    everywhere_ = glm::dvec3(0);
+    for (const MediumPart& part : parts_) {
+        if (!part.everywhere()) {
+            everywhere_.reset();
+            break;
+        }
+        *everywhere_ += *part.everywhere();
     }
 }
 
@@ -180,17 +193,22 @@ glm::dvec3 SceneMedia::depth(const glm::dvec3& origin, const glm::dvec3& directi
 
 glm::dvec3 SceneMedia::transmittance(const glm::dvec3& origin, const glm::dvec3& direction,
                                      double distance) const {
-    const glm::dvec3 tau = depth(origin, direction, distance);
-    return {std::exp(-tau.x), std::exp(-tau.y), std::exp(-tau.z)};
+    return transmittance_of(depth(origin, direction, distance));
 }
 
 std::vector<double> SceneMedia::marks(const glm::dvec3& origin, const glm::dvec3& direction,
-                                      double distance) const {
+                                      double distance, double least) const {
     std::vector<double> marks = {0, distance};
-    for (const MediumPart& part : parts_) part.mark(origin, direction, distance, marks);
+    for (const MediumPart& part : parts_) part.mark(origin, direction, distance, marks, least);
     std::sort(marks.begin(), marks.end());
     marks.erase(std::unique(marks.begin(), marks.end()), marks.end());
     return marks;
+}
+
+glm::dvec3 transmittance_of(const glm::dvec3& depth) {
+    const double first = std::exp(-depth.x);
+    if (depth.y == depth.x && depth.z == depth.x) return glm::dvec3(first);
+    return {first, std::exp(-depth.y), std::exp(-depth.z)};
 }
 
 }  // namespace airlight

@@ -41,9 +41,12 @@ class MediumPart {
     glm::dvec3 depth(const glm::dvec3& origin, const glm::dvec3& direction, double distance) const;
 
     /// Adds distances in (0, distance) at which the medium begins or ends along a ray, and those
-    /// around which a Gaussian is dense.
+    /// around which a Gaussian is dense, unless the depth through it is under `least`.
     void mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-              std::vector<double>& marks) const;
+              std::vector<double>& marks, double least = 0) const;
+
+    /// The extinction of a medium that is the same everywhere.
+    const std::optional<glm::dvec3>& everywhere() const { return everywhere_; }
 
     static constexpr std::size_t kFewBlobs = 32;
     static constexpr double kTreeDepth = 1e-9;
@@ -59,6 +62,7 @@ class MediumPart {
     glm::dvec3 colour_{1}, albedo_{1};
     PhaseFunction phase_;
     std::optional<SceneBox> bounds_;
+    std::optional<glm::dvec3> everywhere_;
 };
 
 /// All media but slabs; what they do adds up.
@@ -69,6 +73,8 @@ class SceneMedia {
 
     bool empty() const { return parts_.empty(); }
     const std::vector<MediumPart>& parts() const { return parts_; }
+    /// The extinction of all where each is the same everywhere.
+    const std::optional<glm::dvec3>& everywhere() const { return everywhere_; }
 
     glm::dvec3 density(const glm::dvec3& x) const;
     glm::dvec3 depth(const glm::dvec3& origin, const glm::dvec3& direction, double distance) const;
@@ -78,10 +84,14 @@ class SceneMedia {
 
     /// 0, the marks of all media and `distance`, ascending.
     std::vector<double> marks(const glm::dvec3& origin, const glm::dvec3& direction,
-                              double distance) const;
+                              double distance, double least = 0) const;
 
   private:
     std::vector<MediumPart> parts_;
+    std::optional<glm::dvec3> everywhere_;
 };
+
+/// e^{-depth}, once where all channels have the same.
+glm::dvec3 transmittance_of(const glm::dvec3& depth);
 
 }  // namespace airlight

@@ -13,6 +13,7 @@
 #include "prt/mesh_io.h"
 #include "prt/ray_scene.h"
 #include "viewer/environment_sampler.h"
+#include "viewer/ray_shadows.h"
 
 namespace airlight {
 namespace {
@@ -61,6 +62,9 @@ World::World(const Scene& scene, const WorldOptions& options) : scene_(scene), m
         RaySceneOptions rays;
         rays.max_memory = options.max_memory;
         rays_ = std::make_unique<RayScene>(meshes_[0], others, rays);
+        if (!media_.empty() && !scene.lights.empty()) {
+            shadows_ = std::make_unique<RayShadows>(meshes_, options.max_memory);
+        }
     }
     if (scene.environment) {
         ReadOptions map;

@@ -17,6 +17,7 @@ namespace airlight {
 
 class EnvironmentSampler;
 class RayScene;
+class RayShadows;
 
 /// Where a ray meets an object.
 struct WorldHit {
@@ -50,6 +51,8 @@ class World {
                                   double distance) const;
     /// Whether an object lies between two points.
     bool is_blocked(const glm::dvec3& from, const glm::dvec3& to) const;
+    /// The shadows of all objects in media; null without objects, media or point lights.
+    const RayShadows* shadows() const { return shadows_.get(); }
     /// Where rays that leave a point of a surface begin: lifted off it on the side of `face`.
     glm::dvec3 lifted(const WorldHit& hit) const;
 
@@ -64,6 +67,7 @@ class World {
     SceneMedia media_;
     std::vector<Mesh> meshes_;  ///< in world coordinates
     std::unique_ptr<RayScene> rays_;
+    std::unique_ptr<RayShadows> shadows_;
     std::unique_ptr<EnvironmentSampler> sampler_;
 };
 

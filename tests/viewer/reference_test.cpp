@@ -9,6 +9,7 @@
 #include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <random>
 
 #include "core/threads.h"
 #include "envmap/io.h"
@@ -54,7 +55,7 @@ class ReferenceTest : public testing::Test {
     }
 
     /// A triangle of that size around the origin that looks at +Z.
-    void add_triangle(Scene& scene, double size, const Material& material) {
+    void add_triangle(Scene& scene, double size, const Material& material) const {
         std::ofstream(directory_ / "triangle.obj")
             << "v " << -size << " " << -size << " 0\nv " << 2 * size << " " << -size << " 0\nv 0 "
             << 2 * size << " 0\nf 1 2 3\n";
@@ -63,6 +64,27 @@ class ReferenceTest : public testing::Test {
         object.material = material;
         scene.objects.push_back(object);
     }
+
+    /// A sphere of radius 1 with `rings` rings of triangles.
+    void write_ball(const std::string& name, int rings) const {
+        std::ofstream out(directory_ / name);
+        const int sides = 2 * rings;
+        for (int i = 0; i <= rings; ++i) {
+            for (int j = 0; j < sides; ++j) {
+                const double theta = kPi * i / rings, phi = 2 * kPi * j / sides;
+                out << "v " << std::sin(theta) * std::cos(phi) << " " << std::cos(theta) << " "
+                    << std::sin(theta) * std::sin(phi) << "\n";
+            }
+        }
+        for (int i = 0; i < rings; ++i) {
+            for (int j = 0; j < sides; ++j) {
+                const int a = i * sides + j + 1, b = i * sides + (j + 1) % sides + 1;
+                if (i > 0) out << "f " << a << " " << b << " " << b + sides << "\n";
+                if (i + 1 < rings) out << "f " << a << " " << b + sides << " " << a + sides << "\n";
+            }
+        }
+    }
+    Scene shady_scene(std::uint64_t seed) const;
 
     ScratchDirectory directory_;
     ReferenceCounts counts_;
@@ -244,6 +266,150 @@ TEST_F(ReferenceTest, ObjectsShadeTheMediumBehindThem) {
     EXPECT_GT(
         ReferenceRenderer(world, options).airlight_of_lights({-1, 0, -1}, {1, 0, 0}, 2, counts_).x,
         0);
+}
+
+// Spheres of few and many triangles and a lone triangle around the origin, lamps among them.
+Scene ReferenceTest::shady_scene(std::uint64_t seed) const {
+    std::mt19937_64 random(seed);
+    const auto between = [&](double a, double b) {
+        return a + (b - a) * std::ldexp(double(random() >> 11), -53);
+    };
+    Scene scene;
+    add_triangle(scene, 1, LambertMaterial{});
+    for (int i = 0; i < 4; ++i) {
+        const std::string name = "ball" + std::to_string(i) + ".obj";
+        write_ball(name, 3 << i);
+        SceneObject ball;
+        ball.mesh = file(name);
+        ball.transform = glm::dmat4(between(0.1, 1));
+        for (int c = 0; c < 3; ++c) ball.transform[3][c] = between(-2, 2);
+        ball.transform[3][3] = 1;
+        scene.objects.push_back(ball);
+    }
+    for (int i = 0; i < 2; ++i) {
+        scene.lights.push_back({{between(-3, 3), between(-3, 3), between(-3, 3)},
+                                {between(0, 9), between(0, 9), between(0, 9)}});
+    }
+    return scene;
+}
+
+TEST_F(ReferenceTest, PartsOfARayThatALampReachesAreThoseOfShadowRays) {
+    int probed = 0, shaded = 0, wrong = 0;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        Scene scene = shady_scene(seed);
+        scene.media = {uniform(0.1, 0)};
+        const World world(scene);
+        ASSERT_NE(world.shadows(), nullptr);
+        for (int i = 0; i < 40; ++i) {
+            SampleStream stream(seed, static_cast<std::uint64_t>(i));
+            const auto coordinate = [&] { return 6 * stream.next() - 3; };
+            const glm::dvec3 origin(coordinate(), coordinate(), coordinate());
+            const glm::dvec3 direction =
+                glm::normalize(glm::dvec3(coordinate(), coordinate(), coordinate()));
+            const double distance = i % 3 == 0 ? kInfinite : 8 * stream.next();
+            const glm::dvec3 light = scene.lights[0].position;
+            const auto lit = world.shadows()->lit(light, origin, direction, distance);
+            for (int k = 0; k < 50; ++k) {
+                const double t = std::min(distance, 12.0) * stream.next();
+                bool in = false, near = false;
+                for (const RayInterval& part : lit) {
+                    in = in || (t >= part.begin && t <= part.end);
+                    // Embree's own single precision.
+                    near = near || std::abs(t - part.begin) < 1e-4 || std::abs(t - part.end) < 1e-4;
+                }
+                if (near) continue;
+                ++probed;
+                shaded += in ? 0 : 1;
+                wrong += in == world.is_blocked(origin + t * direction, light) ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(shaded, probed / 20);
+    // Rays along edges, which Embree's rounding puts on either side.
+    EXPECT_LE(wrong, probed / 5000) << shaded << " of " << probed;
+}
+
+TEST_F(ReferenceTest, LineIntegralsAreWithinTheirTolerance) {
+    // Against 1e-8, over media in which each way of summing is taken, shadows among them.
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        Scene scene = shady_scene(seed);
+        scene.media = {uniform(0.1, 0.02)};
+        if (seed % 3 == 1) {
+            scene.media.push_back(gaussians({{{0, 1, 0}, 1.5, 0.8}, {{1, 0, -1}, 4, 2}}));
+        }
+        if (seed % 3 == 2) {
+            scene.media[0].phase.type = PhaseType::henyey_greenstein;
+            scene.media[0].phase.g = 0.6;
+            scene.media[0].bounds = SceneBox{{-2, -1, -2}, {2, 1, 1}};
+        }
+        const World world(scene);
+        ReferenceOptions exact;
+        exact.quadrature = 1e-8;
+        for (const double tolerance : {1e-2, 1e-3, 1e-5}) {
+            ReferenceOptions options;
+            options.quadrature = tolerance;
+            for (int i = 0; i < 60; ++i) {
+                SampleStream stream(seed, static_cast<std::uint64_t>(i));
+                const auto coordinate = [&] { return 6 * stream.next() - 3; };
+                const glm::dvec3 origin(coordinate(), coordinate(), coordinate());
+                const glm::dvec3 direction =
+                    glm::normalize(glm::dvec3(coordinate(), coordinate(), coordinate()));
+                const double distance = i % 4 == 0 ? kInfinite : 10 * stream.next();
+                const glm::dvec3 expected =
+                    ReferenceRenderer(world, exact)
+                        .airlight_of_lights(origin, direction, distance, counts_);
+                const glm::dvec3 found =
+                    ReferenceRenderer(world, options)
+                        .airlight_of_lights(origin, direction, distance, counts_);
+                const double most = std::max({expected.x, expected.y, expected.z});
+                for (int c = 0; c < 3; ++c) {
+                    EXPECT_NEAR(found[c], expected[c], tolerance * most) << seed << " " << i;
+                }
+            }
+        }
+    }
+}
+
+TEST_F(ReferenceTest, ClosedFormsAndQuadratureSumTheSameShadows) {
+    double by_points = 0, by_parts = 0;
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        Scene scene = shady_scene(seed);
+        scene.media = {uniform(0.1, 0.02), uniform(0.03, 0)};
+        scene.media[1].phase.type = PhaseType::henyey_greenstein;
+        scene.media[1].phase.g = -0.4;
+        if (seed % 2 == 1) {
+            scene.media[0].kind = SceneUniform{{0.1, 0.2, 0.3}, {0.05, 0, 0.01}};
+        }
+        const World closed(scene);
+        // A box around everything is nothing that a closed form has.
+        scene.media[0].bounds = SceneBox{glm::dvec3(-1e4), glm::dvec3(1e4)};
+        const World summed(scene);
+        ReferenceOptions options;
+        options.quadrature = 1e-8;
+        for (int i = 0; i < 40; ++i) {
+            SampleStream stream(seed, static_cast<std::uint64_t>(i));
+            const auto coordinate = [&] { return 6 * stream.next() - 3; };
+            const glm::dvec3 origin(coordinate(), coordinate(), coordinate());
+            const glm::dvec3 direction =
+                glm::normalize(glm::dvec3(coordinate(), coordinate(), coordinate()));
+            const double distance = 10 * stream.next();
+            const glm::dvec3 a = ReferenceRenderer(closed, options)
+                                     .airlight_of_lights(origin, direction, distance, counts_);
+            const glm::dvec3 b = ReferenceRenderer(summed, options)
+                                     .airlight_of_lights(origin, direction, distance, counts_);
+            const double most = std::max({b.x, b.y, b.z});
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 3e-8 * most) << seed << " " << i;
+            // Shadow rays from points miss some of the shadows, now and then.
+            ReferenceOptions points;
+            points.airlight = RayAirlight::points;
+            points.quadrature = 1e-4;
+            const glm::dvec3 p = ReferenceRenderer(summed, points)
+                                     .airlight_of_lights(origin, direction, distance, counts_);
+            by_points += p.x;
+            by_parts += b.x;
+        }
+    }
+    EXPECT_NEAR(by_points, by_parts, 0.01 * by_parts);
 }
 
 TEST_F(ReferenceTest, PicturesAreTheSameForAnyNumberOfThreads) {

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// The light of point lights that media scatter along a ray.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "medium/phase_airlight.h"
+#include "viewer/line_quadrature.h"
+#include "viewer/reference.h"
+
+namespace airlight {
+namespace {
+
+double largest(const glm::dvec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+}  // namespace
+
+// sum_m sigma_s,m p_m at a point, for light that travels along `incoming`.
+glm::dvec3 ReferenceRenderer::scattered(const glm::dvec3& x, const glm::dvec3& incoming,
+                                        const glm::dvec3& outgoing) const {
+    const double cosine = std::clamp(glm::dot(incoming, outgoing), -1.0, 1.0);
+    glm::dvec3 sum(0);
+    for (const MediumPart& part : world_.media().parts()) {
+        sum += part.albedo() * part.density(x) * part.phase().at_cosine(cosine);
+    }
+    return sum;
+}
+
+// Each part as seen from its own beginning, where nothing cancels.
+glm::dvec3 ReferenceRenderer::airlight_of_uniform(const PointLight& light, double foot,
+                                                  double height,
+                                                  const std::vector<RayInterval>& lit) const {
+    const glm::dvec3 extinction = *world_.media().everywhere();
+    const bool grey = extinction.x == extinction.y && extinction.x == extinction.z;
+    glm::dvec3 sum(0);
+    for (const MediumPart& part : world_.media().parts()) {
+        glm::dvec3 integral(0);
+        for (int c = 0; c < (grey ? 1 : 3); ++c) {
+            const double sigma = extinction[c];
+            if (!(sigma > 0)) continue;
+            for (const RayInterval& piece : lit) {
+                const double gamma = std::atan2(height, foot - piece.begin);
+                const double distance = std::hypot(height, foot - piece.begin);
+                integral[c] += sigma * std::exp(-sigma * piece.begin) *
+                               airlight(gamma, sigma * distance, sigma * (piece.end - piece.begin),
+                                        part.phase());
+            }
+        }
+        if (grey) integral = glm::dvec3(integral.x);
+        sum += part.albedo() * *part.everywhere() * integral;
+    }
+    return light.intensity * sum;
+}
+
+// With s = t - foot the distance along the ray from its point next to the light, at the height h
+// above it, and s = h tan u: dt / (s^2 + h^2) = du / h.
+glm::dvec3 ReferenceRenderer::airlight_of(const PointLight& light, const glm::dvec3& origin,
+                                          const glm::dvec3& direction, double distance,
+                                          double absolute, ReferenceCounts& counts) const {
+    const SceneMedia& media = world_.media();
+    const double intensity = largest(light.intensity);
+    if (!(intensity > 0 && distance > 0)) return glm::dvec3(0);
+    const bool by_parts = options_.airlight == RayAirlight::parts;
+    const double foot = glm::dot(light.position - origin, direction);
+    const glm::dvec3 across = light.position - origin - foot * direction;
+    // A ray through the light diverges there; the rounding of coordinates keeps it off.
+    const double height = std::max(glm::length(across), 1e-9 * (1 + std::abs(foot)));
+    std::vector<RayInterval> lit = {{0, distance}};
+    if (by_parts && options_.shadows_in_media && world_.shadows()) {
+        lit = world_.shadows()->lit(light.position, origin, direction, distance);
+    }
+    if (by_parts && media.everywhere()) return airlight_of_uniform(light, foot, height, lit);
+
+    LineQuadratureOptions quadrature;
+    quadrature.relative = options_.quadrature;
+    quadrature.absolute = absolute * height / intensity;
+    std::vector<double> breaks = media.marks(origin, direction, distance, options_.quadrature);
+    if (foot > 0 && foot < distance) {
+        breaks.insert(std::upper_bound(breaks.begin(), breaks.end(), foot), foot);
+    }
+    const auto angle_at = [&](double t) { return std::atan((t - foot) / height); };
+    std::vector<LinePanel> panels;
+    for (const RayInterval& part : lit) {
+        double begin = angle_at(part.begin);
+        for (const double t : breaks) {
+            if (!(t > part.begin && t < part.end)) continue;
+            const double end = angle_at(t);
+            panels.push_back({begin, end});
+            begin = end;
+        }
+        panels.push_back({begin, angle_at(part.end)});
+    }
+    const auto integrand = [&](double u) {
+        const double t = foot + height * std::tan(u);
+        if (!(t > 0 && t < distance)) return glm::dvec3(0);
+        ++counts.line_points;
+        const glm::dvec3 x = origin + t * direction;
+        const glm::dvec3 to_light = light.position - x;
+        const double r = glm::length(to_light);
+        if (!(r > 0)) return glm::dvec3(0);
+        const glm::dvec3 sent = scattered(x, -to_light / r, -direction);
+        if (!(largest(sent) > 0)) return glm::dvec3(0);
+        if (!by_parts && options_.shadows_in_media && !sees(x, light.position, counts)) {
+            return glm::dvec3(0);
+        }
+        return sent * transmittance_of(media.depth(origin, direction, t) +
+                                       media.depth(x, to_light / r, r));
+    };
+    return light.intensity / height * integrate_panels(integrand, panels, quadrature).value;
+}
+
+glm::dvec3 ReferenceRenderer::airlight_of_lights(const glm::dvec3& origin,
+                                                 const glm::dvec3& direction, double distance,
+                                                 ReferenceCounts& counts, double absolute) const {
+    glm::dvec3 sum(0);
+    if (world_.media().empty()) return sum;
+    for (const PointLight& light : world_.scene().lights) {
+        sum += airlight_of(light, origin, direction, distance,
+                           std::max(absolute, options_.quadrature * largest(sum)), counts);
+    }
+    return sum;
+}
+
+}  // namespace airlight
