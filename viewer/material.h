@@ -4,16 +4,26 @@
 
 #include <glm/vec3.hpp>
 
+#include <memory>
+
+#include "viewer/axes.h"
+#include "viewer/brdf_lobe.h"
 #include "viewer/sample_stream.h"
 #include "viewer/scene.h"
 
 namespace airlight {
 
+/// A material with its file read.
+struct SurfaceMaterial {
+    Material kind;
+    std::shared_ptr<const BrdfLobe> table;  ///< of a tabulated one
+};
+
 /// Radiance that leaves towards `to_viewer` per irradiance across a beam from `to_light`, the
 /// foreshortening in it [1/sr]. All three are unit vectors, the normal on the side of the viewer;
 /// 0 for light from behind it.
-glm::dvec3 reflect(const Material& material, const glm::dvec3& normal, const glm::dvec3& to_viewer,
-                   const glm::dvec3& to_light);
+glm::dvec3 reflect(const SurfaceMaterial& material, const glm::dvec3& normal,
+                   const glm::dvec3& to_viewer, const glm::dvec3& to_light);
 
 struct LobeSample {
     glm::dvec3 direction{0};
@@ -21,12 +31,9 @@ struct LobeSample {
 };
 
 /// A direction that reflect() is large for, and the density of drawing one.
-LobeSample sample_lobe(const Material& material, const glm::dvec3& normal,
+LobeSample sample_lobe(const SurfaceMaterial& material, const glm::dvec3& normal,
                        const glm::dvec3& to_viewer, SampleStream& stream);
-double lobe_pdf(const Material& material, const glm::dvec3& normal, const glm::dvec3& to_viewer,
-                const glm::dvec3& direction);
-
-/// Unit axes with z along a unit vector: columns x, y of a right-handed frame.
-void make_axes(const glm::dvec3& z, glm::dvec3& x, glm::dvec3& y);
+double lobe_pdf(const SurfaceMaterial& material, const glm::dvec3& normal,
+                const glm::dvec3& to_viewer, const glm::dvec3& direction);
 
 }  // namespace airlight

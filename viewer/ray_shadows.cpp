@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "viewer/material.h"
+#include "viewer/axes.h"
 
 namespace airlight {
 namespace {

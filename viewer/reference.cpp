@@ -62,7 +62,7 @@ glm::dvec3 ReferenceRenderer::surface_of_map(const WorldHit& hit, const glm::dve
                                              ReferenceCounts& counts) const {
     const EnvironmentSampler* const sampler = world_.sampler();
     if (!sampler) return glm::dvec3(0);
-    const Material& material = world_.scene().objects[hit.object].material;
+    const SurfaceMaterial& material = world_.material(hit.object);
     const auto arriving = [&](const glm::dvec3& direction) {
         if (!(glm::dot(direction, hit.face) > 0) || !sees_map(from, direction, counts)) {
             return glm::dvec3(0);
@@ -96,7 +96,7 @@ glm::dvec3 ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::d
                                                SampleStream& stream,
                                                ReferenceCounts& counts) const {
     if (world_.media().empty()) return glm::dvec3(0);
-    const Material& material = world_.scene().objects[hit.object].material;
+    const SurfaceMaterial& material = world_.material(hit.object);
     const auto end_of = [&](const glm::dvec3& direction) {
         ++counts.rays;
         const std::optional<WorldHit> next = world_.trace(from, direction, kInfinite);
@@ -132,7 +132,7 @@ glm::dvec3 ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::d
 
 glm::dvec3 ReferenceRenderer::surface(const WorldHit& hit, const glm::dvec3& to_viewer,
                                       SampleStream& stream, ReferenceCounts& counts) const {
-    const Material& material = world_.scene().objects[hit.object].material;
+    const SurfaceMaterial& material = world_.material(hit.object);
     const glm::dvec3 from = world_.lifted(hit);
     glm::dvec3 sum(0);
     for (const PointLight& light : world_.scene().lights) {

@@ -7,11 +7,14 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <map>
+#include <string>
 
 #include "core/error.h"
 #include "envmap/io.h"
 #include "prt/mesh_io.h"
 #include "prt/ray_scene.h"
+#include "sh/brdf_file.h"
 #include "viewer/environment_sampler.h"
 #include "viewer/ray_shadows.h"
 
@@ -39,12 +42,27 @@ void refuse_unknown(const Scene& scene) {
             refuse(fmt::format("media[{}], a slab,", i));
         }
     }
-    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-        if (std::holds_alternative<TabulatedMaterial>(scene.objects[i].material)) {
-            refuse(fmt::format("objects[{}].material, a tabulated one,", i));
-        }
-    }
     if (scene.shafts) refuse("shafts");
+}
+
+// Objects of the same file share its table.
+std::vector<SurfaceMaterial> read_materials(const std::vector<SceneObject>& objects,
+                                            std::size_t max_memory) {
+    std::map<std::string, std::shared_ptr<const BrdfLobe>> tables;
+    std::vector<SurfaceMaterial> materials;
+    for (const SceneObject& object : objects) {
+        materials.push_back({object.material, nullptr});
+        const auto* tabulated = std::get_if<TabulatedMaterial>(&object.material);
+        if (!tabulated) continue;
+        std::shared_ptr<const BrdfLobe>& table = tables[tabulated->file.path];
+        if (!table) {
+            BrdfReadOptions options;
+            options.max_memory = max_memory;
+            table = std::make_shared<BrdfLobe>(read_brdf(tabulated->file.path, options));
+        }
+        materials.back().table = table;
+    }
+    return materials;
 }
 
 }  // namespace
@@ -56,6 +74,7 @@ World::World(const Scene& scene, const WorldOptions& options) : scene_(scene), m
     for (const SceneObject& object : scene.objects) {
         meshes_.push_back(placed(read_mesh(object.mesh.path, read), object.transform));
     }
+    materials_ = read_materials(scene.objects, options.max_memory);
     if (!meshes_.empty()) {
         std::vector<const Mesh*> others;
         for (std::size_t i = 1; i < meshes_.size(); ++i) others.push_back(&meshes_[i]);

@@ -10,6 +10,7 @@
 
 #include "core/checked.h"
 #include "prt/mesh.h"
+#include "viewer/material.h"
 #include "viewer/scene.h"
 #include "viewer/scene_media.h"
 
@@ -36,7 +37,7 @@ struct WorldOptions {
 class World {
   public:
     /// Reads meshes and the environment map. Throws what their readers throw, naming the file, and
-    /// Error(data) for slabs, tabulated materials and shafts, which are not rendered yet.
+    /// Error(data) for slabs and shafts, which are not rendered yet.
     explicit World(const Scene& scene, const WorldOptions& options = {});
     ~World();
     World(World&&) noexcept;
@@ -44,6 +45,7 @@ class World {
 
     const Scene& scene() const { return scene_; }
     const SceneMedia& media() const { return media_; }
+    const SurfaceMaterial& material(std::size_t object) const { return materials_[object]; }
     std::size_t triangles() const;
 
     /// The nearest object within `distance` along a unit direction.
@@ -66,6 +68,7 @@ class World {
     Scene scene_;
     SceneMedia media_;
     std::vector<Mesh> meshes_;  ///< in world coordinates
+    std::vector<SurfaceMaterial> materials_;
     std::unique_ptr<RayScene> rays_;
     std::unique_ptr<RayShadows> shadows_;
     std::unique_ptr<EnvironmentSampler> sampler_;
