@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "medium/quadrature.h"
+#include "medium/refracted_path.h"
 #include "medium/refraction.h"
 #include "medium/slab.h"
 
@@ -60,40 +61,6 @@ View view_of(const SlabMedium& medium, const SlabSegment& segment) {
     return view;
 }
 
-/// The path through two layers, of thickness `low` and index n_low, `high` and n_high >= n_low,
-/// that spans `across` sideways.
-struct BentPath {
-    double cosine_low, cosine_high;
-    bool exists;
-};
-
-/// Snell's law for t = tan(theta_low): low t + high tan(theta_high) = across. The left side is
-/// concave, so that Newton's steps from below stay below; no cosine is a difference.
-BentPath bent_path(double low, double high, double across, double n_low, double n_high) {
-    const double r = n_low / n_high, gap = (n_high - n_low) * (n_high + n_low) / n_high / n_high;
-    const double most = r / std::sqrt(gap);  // tan(theta_high) of a grazing ray
-    if (low == 0) {
-        const double tangent = across / high;
-        if (!(tangent < most)) return {0, 0, false};
-        const double cosine = 1 / std::hypot(1, tangent);
-        const double sine = tangent * cosine / r;
-        return {std::sqrt((1 - sine) * (1 + sine)), cosine, true};
-    }
-    double t = std::max(across / (low + high * r), (across - high * most) / low);
-    double cosine = 1, cosine_high = 1;
-    for (int i = 0; i < 60; ++i) {
-        cosine = 1 / std::hypot(1, t);
-        const double sine = t * cosine;
-        cosine_high = std::hypot(cosine, std::sqrt(gap) * sine);
-        const double value = low * t + high * (r * sine / cosine_high) - across;
-        const double turn = cosine / cosine_high;
-        const double step = value / (low + high * r * turn * turn * turn);
-        if (!(std::abs(step) > 2e-16 * t)) break;
-        t = std::max(0.0, t - step);
-    }
-    return {cosine, cosine_high, true};
-}
-
 /// Irradiance across the beam at depth x along the ray times e^{-sigma_t (x + k)}, I_0 = 1.
 class RefractedLight {
   public:
@@ -106,19 +73,11 @@ class RefractedLight {
           slide_(view.direction - view.normal * glm::dot(view.direction, view.normal)) {}
 
     double operator()(double x) const {
-        const double n1 = medium_.ior_outside, n2 = medium_.ior_inside;
         const double depth = x * cosine_, across = glm::length(side_ + slide_ * x);
-        const bool denser = n2 > n1;
-        const BentPath path = denser ? bent_path(height_, depth, across, n1, n2)
-                                     : bent_path(depth, height_, across, n2, n1);
+        const RefractedPath path =
+            refracted_path(height_, depth, across, medium_.ior_outside, medium_.ior_inside);
         if (!path.exists) return 0;
-        const double c1 = denser ? path.cosine_low : path.cosine_high;
-        const double c2 = denser ? path.cosine_high : path.cosine_low;
-        const double outside = height_ / c1, inside = depth > 0 ? depth / c2 : 0;
-        const double r = n1 / n2, turn = c1 / c2;
-        const double spread = (outside + r * inside) * (outside + r * inside * turn * turn);
-        const double value =
-            beam_transmittance(c1, c2, n1, n2) * std::exp(-sigma_t_ * (x + inside)) / spread;
+        const double value = path.irradiance * std::exp(-sigma_t_ * (x + path.below));
         return value > 0 ? value : 0;
     }
 

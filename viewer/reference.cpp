@@ -18,6 +18,36 @@ double largest(const glm::dvec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
+struct Collision {
+    double t, pdf;
+};
+
+// Where on a ray: with the density of the first collision, were the depth between marks spread
+// evenly; what that misses is weighed.
+template <class Depth>
+Collision first_collision(const std::vector<double>& marks, const Depth& depth_to, double xi) {
+    const double last = marks.back();
+    const double all = -std::expm1(-depth_to(last));
+    if (!(all > 0)) return {xi * last, 1 / last};
+    double before = 0, gone = 0;
+    for (std::size_t i = 1;; ++i) {
+        const double depth = i + 1 < marks.size() ? depth_to(marks[i]) : depth_to(last);
+        const double share = std::exp(-before) * -std::expm1(before - depth);
+        if (i + 1 < marks.size() && !(xi * all < gone + share)) {
+            gone += share;
+            before = depth;
+            continue;
+        }
+        const double width = marks[i] - marks[i - 1];
+        if (!(share > 0)) return {marks[i], kInfinite};
+        const double left = std::clamp((xi * all - gone) / share, 0.0, 1.0);
+        const double rate = (depth - before) / width;
+        const double far = std::log1p(left * std::expm1(before - depth));
+        const double t = marks[i - 1] + std::min(width, -far / rate);
+        return {t, std::exp(-before + far) * rate / all};
+    }
+}
+
 }  // namespace
 
 bool ReferenceRenderer::sees(const glm::dvec3& from, const glm::dvec3& to,
@@ -32,29 +62,39 @@ bool ReferenceRenderer::sees_map(const glm::dvec3& from, const glm::dvec3& direc
     return !world_.trace(from, direction, kInfinite);
 }
 
-// Where on the ray: with the density of the first collision, were the whole depth spread evenly;
-// what that misses is weighed.
-glm::dvec3 ReferenceRenderer::airlight_of_map(const glm::dvec3& origin, const glm::dvec3& direction,
-                                              double distance, SampleStream& stream,
+glm::dvec3 ReferenceRenderer::airlight_of_map(const RayPiece& piece, SampleStream& stream,
                                               ReferenceCounts& counts) const {
     const SceneMedia& media = world_.media();
     const EnvironmentSampler* const sampler = world_.sampler();
-    if (media.empty() || !sampler || !std::isfinite(distance)) return glm::dvec3(0);
+    if ((media.empty() && !piece.slab) || !sampler || !std::isfinite(piece.distance)) {
+        return glm::dvec3(0);
+    }
     const double xi = stream.next(), choice_x = stream.next(), choice_y = stream.next();
-    const double depth = largest(media.depth(origin, direction, distance));
-    const double rate = std::min(depth, 700.0) / distance;
-    const double all = -std::expm1(-rate * distance);
-    const double t = all > 0 ? -std::log1p(-xi * all) / rate : xi * distance;
-    const double pdf = all > 0 ? rate * std::exp(-rate * t) / all : 1 / distance;
-    const glm::dvec3 x = origin + t * direction;
+    const auto depth_to = [&](double t) {
+        const glm::dvec3 depth = media.depth(piece.origin, piece.direction, t);
+        return piece.slab ? depth + piece.slab->extinction * t : depth;
+    };
+    const auto [t, pdf] = first_collision(
+        media.marks(piece.origin, piece.direction, piece.distance),
+        [&](double end) { return largest(depth_to(end)); }, xi);
+    const glm::dvec3 x = piece.origin + t * piece.direction;
     const EnvironmentSample light = sampler->sample(choice_x, choice_y);
-    if (!(light.pdf > 0)) return glm::dvec3(0);
+    if (!(light.pdf > 0 && pdf > 0)) return glm::dvec3(0);
     ++counts.line_points;
-    const glm::dvec3 scattered = this->scattered(x, -light.direction, -direction);
+    const glm::dvec3 sent = transmittance_of(depth_to(t)) * light.radiance / (light.pdf * pdf);
+    if (piece.slab) {
+        glm::dvec3 sum(0);
+        for (const SlabArrival& way : arrivals_of_direction(*piece.slab, x, light.direction)) {
+            sum += sent_in_slab(*piece.slab, x, -way.to_light, -piece.direction) *
+                   map_in_slab(*piece.slab, x, way, light.direction, options_.shadows_in_media,
+                               counts);
+        }
+        return sent * sum;
+    }
     if (options_.shadows_in_media && !sees_map(x, light.direction, counts)) return glm::dvec3(0);
-    return scattered * media.transmittance(origin, direction, t) *
-           media.transmittance(x, light.direction, world_.scene().environment->distance) *
-           light.radiance / (light.pdf * pdf);
+    return sent * scattered(x, -light.direction, -piece.direction) *
+           transmittance_of(
+               straight_depth(x, light.direction, world_.scene().environment->distance));
 }
 
 glm::dvec3 ReferenceRenderer::surface_of_map(const WorldHit& hit, const glm::dvec3& to_viewer,
@@ -68,7 +108,8 @@ glm::dvec3 ReferenceRenderer::surface_of_map(const WorldHit& hit, const glm::dve
             return glm::dvec3(0);
         }
         return world_.environment(direction) *
-               world_.media().transmittance(from, direction, world_.scene().environment->distance);
+               transmittance_of(
+                   straight_depth(from, direction, world_.scene().environment->distance));
     };
     // Two ways to draw a direction, each weighed by the sum of both densities.
     const double x = stream.next(), y = stream.next();
@@ -95,13 +136,12 @@ glm::dvec3 ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::d
                                                const glm::dvec3& from, const glm::dvec3& direct,
                                                SampleStream& stream,
                                                ReferenceCounts& counts) const {
-    if (world_.media().empty()) return glm::dvec3(0);
+    if (world_.media().empty() && world_.slabs().empty()) return glm::dvec3(0);
     const SurfaceMaterial& material = world_.material(hit.object);
-    const auto end_of = [&](const glm::dvec3& direction) {
-        ++counts.rays;
-        const std::optional<WorldHit> next = world_.trace(from, direction, kInfinite);
-        if (next) return next->distance;
-        return world_.sampler() ? world_.scene().environment->distance : kInfinite;
+    const auto path_to = [&](const glm::dvec3& direction) {
+        const RayPath path = follow_ray(world_, from, direction);
+        counts.rays += path.rays;
+        return path;
     };
     glm::dvec3 sum(0);
     for (const PointLight& light : world_.scene().lights) {
@@ -116,15 +156,13 @@ glm::dvec3 ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::d
         if (!(largest(f) > 0) || !(glm::dot(direction, hit.face) > 0)) continue;
         const glm::dvec3 weight = f * (2 * kPi * kPi * std::sin(gamma));
         const double absolute = options_.quadrature * largest(sum + direct) / largest(weight);
-        sum += weight * airlight_of(light, from, direction, end_of(direction), absolute, counts);
+        sum += weight * airlight_along(light, path_to(direction), absolute, counts);
     }
     if (world_.sampler()) {
         const LobeSample lobe = sample_lobe(material, hit.normal, to_viewer, stream);
         const glm::dvec3 f = reflect(material, hit.normal, to_viewer, lobe.direction);
         if (lobe.pdf > 0 && largest(f) > 0 && glm::dot(lobe.direction, hit.face) > 0) {
-            sum += f *
-                   airlight_of_map(from, lobe.direction, end_of(lobe.direction), stream, counts) /
-                   lobe.pdf;
+            sum += f * map_along(path_to(lobe.direction), stream, counts) / lobe.pdf;
         }
     }
     return sum;
@@ -134,6 +172,10 @@ glm::dvec3 ReferenceRenderer::surface(const WorldHit& hit, const glm::dvec3& to_
                                       SampleStream& stream, ReferenceCounts& counts) const {
     const SurfaceMaterial& material = world_.material(hit.object);
     const glm::dvec3 from = world_.lifted(hit);
+    if (const Slab* const slab = world_.slabs().at(from)) {
+        const glm::dvec3 direct = surface_in_slab(*slab, hit, to_viewer, from, stream, counts);
+        return direct + surface_of_media(hit, to_viewer, from, direct, stream, counts);
+    }
     glm::dvec3 sum(0);
     for (const PointLight& light : world_.scene().lights) {
         const glm::dvec3 to_light = light.position - from;
@@ -141,7 +183,8 @@ glm::dvec3 ReferenceRenderer::surface(const WorldHit& hit, const glm::dvec3& to_
         if (!(r > 0) || !(glm::dot(to_light, hit.face) > 0)) continue;
         const glm::dvec3 f = reflect(material, hit.normal, to_viewer, to_light / r);
         if (!(largest(f) > 0) || !sees(from, light.position, counts)) continue;
-        sum += f * light.intensity / (r * r) * world_.media().transmittance(from, to_light / r, r);
+        sum +=
+            f * light.intensity / (r * r) * transmittance_of(straight_depth(from, to_light / r, r));
     }
     sum += surface_of_map(hit, to_viewer, from, stream, counts);
     return sum + surface_of_media(hit, to_viewer, from, sum, stream, counts);
@@ -149,18 +192,18 @@ glm::dvec3 ReferenceRenderer::surface(const WorldHit& hit, const glm::dvec3& to_
 
 glm::dvec3 ReferenceRenderer::radiance(const glm::dvec3& origin, const glm::dvec3& direction,
                                        SampleStream& stream, ReferenceCounts& counts) const {
-    ++counts.rays;
-    const std::optional<WorldHit> hit = world_.trace(origin, direction, kInfinite);
-    const auto& environment = world_.scene().environment;
-    const double distance = hit ? hit->distance : environment ? environment->distance : kInfinite;
-    const glm::dvec3 behind =
-        hit ? surface(*hit, -direction, stream, counts) : world_.environment(direction);
-    glm::dvec3 sum = airlight_of_map(origin, direction, distance, stream, counts);
-    if (largest(behind) > 0) {
-        sum += behind * world_.media().transmittance(origin, direction, distance);
+    const RayPath path = follow_ray(world_, origin, direction);
+    counts.rays += path.rays;
+    glm::dvec3 sum = map_along(path, stream, counts);
+    if (largest(path.throughput) > 0) {
+        const glm::dvec3& last = path.pieces.back().direction;
+        sum += path.throughput *
+               (path.hit ? surface(*path.hit, -last, stream, counts) : world_.environment(last));
     }
-    return sum + airlight_of_lights(origin, direction, distance, counts,
-                                    options_.quadrature * largest(sum));
+    for (const PointLight& light : world_.scene().lights) {
+        sum += airlight_along(light, path, options_.quadrature * largest(sum), counts);
+    }
+    return sum;
 }
 
 }  // namespace airlight

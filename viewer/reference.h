@@ -15,6 +15,13 @@
 // each other) and in media, and what media scatter onto surfaces (around the direction of each
 // light, where that light is 1/sin).
 //
+// Slabs: rays of view refract at their surfaces, light that reaches a point within does so through
+// each face, both by Snell's law with the transmittance of Fresnel, and the light's beam spreads as
+// it bends. Media fill slabs, too. Left out: what surfaces reflect in part (total reflection is
+// followed by the view ray, not by light), light that one slab bends onto something outside it
+// (caustics) or into another slab: that goes straight on, attenuated by the slab's medium but not
+// by its surfaces. An index of 1 is a medium in a box.
+//
 // Camera rays per CPU second, one thread, with one lamp, shadows in the media and all that the
 // surfaces scatter, line integrals to 1e-3 (bench/reference_bench.cpp, on a machine with other
 // work): fog alone 7.4e6; over a floor with three balls of 224 triangles 0.62e6 in grey fog, 0.51e6
@@ -28,6 +35,7 @@
 #include <vector>
 
 #include "core/method_names.h"
+#include "viewer/ray_path.h"
 #include "viewer/ray_shadows.h"
 #include "viewer/sample_stream.h"
 #include "viewer/world.h"
@@ -87,9 +95,28 @@ class ReferenceRenderer {
                                    const std::vector<RayInterval>& lit) const;
     glm::dvec3 scattered(const glm::dvec3& x, const glm::dvec3& incoming,
                          const glm::dvec3& outgoing) const;
-    glm::dvec3 airlight_of_map(const glm::dvec3& origin, const glm::dvec3& direction,
-                               double distance, SampleStream& stream,
+    glm::dvec3 airlight_of_map(const RayPiece& piece, SampleStream& stream,
                                ReferenceCounts& counts) const;
+    glm::dvec3 map_along(const RayPath& path, SampleStream& stream, ReferenceCounts& counts) const;
+    glm::dvec3 airlight_along(const PointLight& light, const RayPath& path, double absolute,
+                              ReferenceCounts& counts) const;
+    glm::dvec3 straight_depth(const glm::dvec3& x, const glm::dvec3& direction,
+                              double distance) const;
+
+    glm::dvec3 airlight_in_slab(const PointLight& light, const RayPiece& piece, double absolute,
+                                ReferenceCounts& counts) const;
+    glm::dvec3 slab_depth(const Slab& slab, const glm::dvec3& x, const SlabArrival& way) const;
+    glm::dvec3 sent_in_slab(const Slab& slab, const glm::dvec3& x, const glm::dvec3& incoming,
+                            const glm::dvec3& outgoing) const;
+    glm::dvec3 irradiance_in_slab(const Slab& slab, const glm::dvec3& x, const SlabArrival& way,
+                                  const PointLight& light, bool shadows,
+                                  ReferenceCounts& counts) const;
+    glm::dvec3 map_in_slab(const Slab& slab, const glm::dvec3& x, const SlabArrival& way,
+                           const glm::dvec3& to_map, bool shadows, ReferenceCounts& counts) const;
+    glm::dvec3 surface_in_slab(const Slab& slab, const WorldHit& hit, const glm::dvec3& to_viewer,
+                               const glm::dvec3& from, SampleStream& stream,
+                               ReferenceCounts& counts) const;
+
     glm::dvec3 surface(const WorldHit& hit, const glm::dvec3& to_viewer, SampleStream& stream,
                        ReferenceCounts& counts) const;
     glm::dvec3 surface_of_map(const WorldHit& hit, const glm::dvec3& to_viewer,

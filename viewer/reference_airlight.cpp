@@ -71,7 +71,9 @@ glm::dvec3 ReferenceRenderer::airlight_of(const PointLight& light, const glm::dv
     if (by_parts && options_.shadows_in_media && world_.shadows()) {
         lit = world_.shadows()->lit(light.position, origin, direction, distance);
     }
-    if (by_parts && media.everywhere()) return airlight_of_uniform(light, foot, height, lit);
+    const SceneSlabs& slabs = world_.slabs();
+    if (by_parts && media.everywhere() && slabs.empty())
+        return airlight_of_uniform(light, foot, height, lit);
 
     LineQuadratureOptions quadrature;
     quadrature.relative = options_.quadrature;
@@ -106,7 +108,7 @@ glm::dvec3 ReferenceRenderer::airlight_of(const PointLight& light, const glm::dv
             return glm::dvec3(0);
         }
         return sent * transmittance_of(media.depth(origin, direction, t) +
-                                       media.depth(x, to_light / r, r));
+                                       straight_depth(x, to_light / r, r));
     };
     return light.intensity / height * integrate_panels(integrand, panels, quadrature).value;
 }

@@ -49,6 +49,15 @@ struct PartBuilder {
     void operator()(const SceneSlab&) { assert(!"a slab is no part"); }
 };
 
+bool contains(const SceneBox& box, const glm::dvec3& x) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(x[axis] >= box.min[axis] && x[axis] <= box.max[axis])) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
 PhaseFunction phase_of(const ScenePhase& phase) {
     switch (phase.type) {
         case PhaseType::isotropic:
@@ -62,15 +71,6 @@ PhaseFunction phase_of(const ScenePhase& phase) {
     }
     return PhaseFunction::isotropic();
 }
-
-bool contains(const SceneBox& box, const glm::dvec3& x) {
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(x[axis] >= box.min[axis] && x[axis] <= box.max[axis])) return false;
-    }
-    return true;
-}
-
-}  // namespace
 
 std::optional<RaySpan> clip_to_box(const SceneBox& box, const glm::dvec3& origin,
                                    const glm::dvec3& direction, double distance) {

@@ -22,6 +22,9 @@ struct RaySpan {
 std::optional<RaySpan> clip_to_box(const SceneBox& box, const glm::dvec3& origin,
                                    const glm::dvec3& direction, double distance);
 
+/// A scene's phase function, read if it is a table.
+PhaseFunction phase_of(const ScenePhase& phase);
+
 /// One medium: extinction density_c(x) [1/m] in channel c, of which the part albedo_c scatters.
 class MediumPart {
   public:

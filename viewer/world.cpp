@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewer/world.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -34,15 +32,7 @@ Mesh placed(Mesh mesh, const glm::dmat4& transform) {
 
 // What the format of scenes has and no renderer does yet.
 void refuse_unknown(const Scene& scene) {
-    const auto refuse = [&](const std::string& what) {
-        throw Error(ErrorCode::data, what + " cannot be rendered yet", scene.path);
-    };
-    for (std::size_t i = 0; i < scene.media.size(); ++i) {
-        if (std::holds_alternative<SceneSlab>(scene.media[i].kind)) {
-            refuse(fmt::format("media[{}], a slab,", i));
-        }
-    }
-    if (scene.shafts) refuse("shafts");
+    if (scene.shafts) throw Error(ErrorCode::data, "shafts cannot be rendered yet", scene.path);
 }
 
 // Objects of the same file share its table.
@@ -67,7 +57,8 @@ std::vector<SurfaceMaterial> read_materials(const std::vector<SceneObject>& obje
 
 }  // namespace
 
-World::World(const Scene& scene, const WorldOptions& options) : scene_(scene), media_(scene.media) {
+World::World(const Scene& scene, const WorldOptions& options)
+    : scene_(scene), media_(scene.media), slabs_(scene.media, scene.path) {
     refuse_unknown(scene);
     MeshReadOptions read;
     read.max_memory = options.max_memory;

@@ -13,6 +13,7 @@
 #include "viewer/material.h"
 #include "viewer/scene.h"
 #include "viewer/scene_media.h"
+#include "viewer/slabs.h"
 
 namespace airlight {
 
@@ -37,7 +38,7 @@ struct WorldOptions {
 class World {
   public:
     /// Reads meshes and the environment map. Throws what their readers throw, naming the file, and
-    /// Error(data) for slabs and shafts, which are not rendered yet.
+    /// Error(data) for slabs that overlap and for shafts, which are not rendered yet.
     explicit World(const Scene& scene, const WorldOptions& options = {});
     ~World();
     World(World&&) noexcept;
@@ -45,6 +46,7 @@ class World {
 
     const Scene& scene() const { return scene_; }
     const SceneMedia& media() const { return media_; }
+    const SceneSlabs& slabs() const { return slabs_; }
     const SurfaceMaterial& material(std::size_t object) const { return materials_[object]; }
     std::size_t triangles() const;
 
@@ -67,6 +69,7 @@ class World {
   private:
     Scene scene_;
     SceneMedia media_;
+    SceneSlabs slabs_;
     std::vector<Mesh> meshes_;  ///< in world coordinates
     std::vector<SurfaceMaterial> materials_;
     std::unique_ptr<RayScene> rays_;

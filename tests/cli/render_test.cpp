@@ -77,9 +77,12 @@ TEST(RenderCommand, RefusesInOneSentence) {
     expect_failure({"render", directory / "none.json", "-o", out}, 1, "none.json: does not exist");
     expect_failure({"render", scene, "-o", out, "--max-memory", "1K"}, 1, "--max-memory");
     write_bytes(scene, R"({"airlight_scene": 1, "media": [
-        {"type": "slab", "min": [0, 0, 0], "max": [1, 1, 1], "scattering": 1}]})");
+        {"type": "slab", "min": [0, 0, 0], "max": [1, 1, 1], "scattering": 1},
+        {"type": "slab", "min": [0, 0.9, 0], "max": [1, 2, 1], "scattering": 1}]})");
     expect_failure({"render", scene, "-o", out}, 1,
-                   "a.json: media[0], a slab, cannot be rendered yet");
+                   "a.json: media[0] and media[1] are slabs that overlap");
+    write_bytes(scene, R"({"airlight_scene": 1, "shafts": {}})");
+    expect_failure({"render", scene, "-o", out}, 1, "a.json: shafts cannot be rendered yet");
     EXPECT_FALSE(std::filesystem::exists(out));
 }
 
