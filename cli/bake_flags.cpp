@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
+#include <system_error>
 
 #include "cli/numbers.h"
 #include "core/atomic_file.h"
@@ -80,6 +82,22 @@ void parse_shard(const std::string& text, BakeRequest& request) {
         static_cast<std::uint32_t>(parse_integer(text.substr(0, slash), "--shard", 1, shards) - 1);
 }
 
+// With --force a bake would replace what it reads.
+void check_files_read(const BakeRequest& request) {
+    std::vector<std::string> files = request.inputs;
+    files.insert(files.end(), request.occluders.begin(), request.occluders.end());
+    if (std::count(files.begin(), files.end(), "-") > 1) {
+        throw Error(ErrorCode::usage, "standard input holds one mesh only", "--occluder");
+    }
+    files.push_back(request.before);
+    for (const std::string& file : files) {
+        std::error_code none;
+        if (file != "-" && std::filesystem::equivalent(file, request.output, none)) {
+            throw Error(ErrorCode::usage, "is read by this bake and cannot be its output", file);
+        }
+    }
+}
+
 }  // namespace
 
 void resolve_bake_method(BakeRequest& request) {
@@ -132,6 +150,7 @@ void check_bake_request(const BakeRequest& request, bool force) {
         std::count(request.kinds.begin(), request.kinds.end(), PrtKind::transfer) == 0) {
         throw Error(ErrorCode::usage, "goes with the kind transfer only", "--bounces");
     }
+    check_files_read(request);
     check_target(request.output, force);
 }
 

@@ -122,6 +122,17 @@ TEST_F(BakeOfHardMesh, TurnedInsideOutIsDarkAndSaidSo) {
     }
 }
 
+// Walls on the ground lose half of their hemisphere to it, which says nothing of their winding.
+TEST_F(BakeOfHardMesh, WhatTheGroundOrOccludersHideIsNoSignOfTurnedWinding) {
+    const std::string wall = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+    for (const float value : baked(wall, 4, {}, {"--ground=0"})) EXPECT_LT(value, 0.6f);
+    for (const float value : baked(wall, 4, {}, {"--ground=2"})) EXPECT_NEAR(value, 0, 1e-6);
+    write_bytes(directory_ / "lid.obj", "v -9 -9 .01\nv 9 -9 .01\nv 0 9 .01\nf 1 2 3\n");
+    for (const float value : baked(wall, 4, {}, {"--occluder", directory_ / "lid.obj"})) {
+        EXPECT_LT(value, 0.1f);
+    }
+}
+
 // Through text, "%.17g".
 TEST_F(BakeOfHardMesh, UnitsDoNotMatter) {
     Mesh star = moved(make_sphere(8), [](const glm::dvec3& p) {

@@ -192,6 +192,32 @@ TEST_F(BakeCommand, OccludersHideLight) {
     }
 }
 
+TEST_F(BakeCommand, TheOutputIsNoFileThatIsRead) {
+    const std::string other = directory_ / "other.obj", link = directory_ / "link.obj",
+                      pass = directory_ / "pass0.prt";
+    write_bytes(other, to_obj(make_globe(4)));
+    ASSERT_EQ(symlink(mesh_.c_str(), link.c_str()), 0);
+    ASSERT_EQ(
+        run({"bake", mesh_, "-o", pass, "--rays", "16", "--bounces", "1", "--pass", "0"}).status,
+        0);
+    const std::string sentence = "is read by this bake and cannot be its output";
+    for (const std::string& output : {mesh_, other, link}) {
+        const std::string before = read_bytes(output);
+        expect_failure({"bake", mesh_, "-o", output, "--occluder", other, "--force"}, 2, sentence);
+        EXPECT_EQ(read_bytes(output), before);
+    }
+    const std::string before = read_bytes(pass);
+    expect_failure({"bake", mesh_, "-o", pass, "--rays", "16", "--bounces", "1", "--pass", "1",
+                    "--before", pass, "--force"},
+                   2, sentence);
+    EXPECT_EQ(read_bytes(pass), before);
+}
+
+TEST_F(BakeCommand, StandardInputIsOneMesh) {
+    expect_failure({"bake", "-", "-o", path_, "--occluder", "-"}, 2,
+                   "--occluder: standard input holds one mesh only", read_bytes(mesh_));
+}
+
 TEST_F(BakeCommand, MistakesAreSaidInOneSentence) {
     const auto refused = [&](const std::vector<std::string>& words, int status,
                              const std::string& sentence) {
