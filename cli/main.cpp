@@ -102,12 +102,11 @@ int run(int argc, char** argv) {
         "  airlight eval psf < points.csv\n"
         "airlight COMMAND --help tells more. Exit status: 0 done, 1 the data or the machine\n"
         "failed, 2 wrong usage; 128 and the signal's number: interrupted.");
-    const std::vector<Command> commands = {declare_fog(program),    declare_info(program),
-                                           declare_eval(program),   declare_sheet(program),
-                                           declare_ladder(program), declare_sh(program),
-                                           declare_export(program), declare_brdf(program),
-                                           declare_bake(program),   declare_merge(program),
-                                           declare_render(program)};
+    const std::vector<Command> commands = {
+        declare_fog(program),    declare_info(program),   declare_eval(program),
+        declare_sheet(program),  declare_ladder(program), declare_sh(program),
+        declare_export(program), declare_brdf(program),   declare_bake(program),
+        declare_merge(program),  declare_render(program)};
     const Command* command = nullptr;
     try {
         command = parse(program, commands, argc, argv);
@@ -136,8 +135,9 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     airlight::occupy_standard_descriptors();
-    // Writing into a closed pipe is an error like any other.
+    // Writing into a closed pipe, or beyond the size that files may have, is an error like others.
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     airlight::set_up_log(0);
     try {
         return airlight::run(argc, argv);

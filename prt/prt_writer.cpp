@@ -99,8 +99,8 @@ struct PrtWriter::State {
                                 there.find_first_not_of('\0') == std::string::npos);
             if (!begun && !discard_other) {
                 refuse(ErrorCode::io,
-                       "holds an unfinished bake of another mesh or with other options (--force "
-                       "discards it)");
+                       "holds an unfinished bake of another mesh or with other options, or is "
+                       "damaged (--force discards it)");
             }
             work->cut(0);
             write(wanted);

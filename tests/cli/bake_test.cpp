@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // airlight bake from the command line.
+#include <sys/resource.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -211,6 +213,18 @@ TEST_F(BakeCommand, TheOutputIsNoFileThatIsRead) {
                     "--before", pass, "--force"},
                    2, sentence);
     EXPECT_EQ(read_bytes(pass), before);
+}
+
+TEST_F(BakeCommand, FilesThatMayNotBeSoLargeAreSaid) {
+    rlimit limit = {};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+    const rlimit small = {4096, limit.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    const Outcome outcome = run(call({"--order", "10"}));
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.err.find("File too large"), std::string::npos) << outcome.err;
+    EXPECT_EQ(directory_.entries(), (std::vector<std::string>{"globe.obj"}));
 }
 
 TEST_F(BakeCommand, StandardInputIsOneMesh) {
