@@ -18,18 +18,18 @@
 //               for more of their kind that no node met: 0.3 of them where their sum over the
 //               hemisphere could be chance, and twice the excess where it is more;
 //     prior     0.02 cells at the horizon, for what left no trace at all;
-// and 1.15 times their norm, which was fitted to five meshes and to thickets. A thing thinner than a
-// cell that no ray met is not in it: of 20 blades that take 2 % of the sky, the estimate at 1e-3 is a
-// quarter short. Of 49 points of a floor, 4 units wide under 60 poles 1e-3 to 2e-2 thick, 12 miss
-// the tolerance 3e-2 by up to 1.7 times in visibility, 2 miss 1e-2 by up to 4.6 times, and 1 misses
-// 3e-3 by 1.1 times.
+// and 1.15 times their norm, which was fitted to five meshes and to thickets. A thing thinner than
+// a cell that no ray met is not in it: of 20 blades that take 2 % of the sky, the estimate at 1e-3
+// is a quarter short. Of 49 points of a floor, 4 units wide under 60 poles 1e-3 to 2e-2 thick, 12
+// miss the tolerance 3e-2 by up to 1.7 times in visibility, 2 miss 1e-2 by up to 4.6 times, and 1
+// misses 3e-3 by 1.1 times.
 // As long as the estimate is over the tolerance, the lattice is made twice as fine where the hidden
 // part has the larger share of it, else borders are cut once more. Where things are thinner than
 // any affordable cell (grass), lines between places miss more than they gain; then the nodes of the
 // lattice are counted instead, with an estimate from the number of edges between nodes that differ.
 //
-// Errors fall like rays^-1.35, those of a fixed number like rays^-0.75 (bunny), as long as borders are
-// lines at the scale of a cell.
+// Errors fall like rays^-1.35, those of a fixed number like rays^-0.75 (bunny), as long as borders
+// are lines at the scale of a cell.
 #pragma once
 
 #include <cstddef>
