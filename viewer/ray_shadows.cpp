@@ -111,9 +111,9 @@ RayInterval shadow_of(const Plane& plane, const std::array<glm::dvec3, 3>& corne
         std::swap(y[0], y[1]);
     }
     if (!(y[1] > 0 && y[0] < h)) return {};
-    const double rise = y[1] - y[0];
+    const double slope = (x[1] - x[0]) / (y[1] - y[0]), at_light = x[1] - slope * (y[1] - h);
     if (y[0] < 0) {
-        x[0] += (x[1] - x[0]) * (-y[0] / rise);
+        x[0] -= slope * y[0];
         y[0] = 0;
     }
     const double a = plane.foot() + h * x[0] / (h - y[0]);
@@ -121,8 +121,7 @@ RayInterval shadow_of(const Plane& plane, const std::array<glm::dvec3, 3>& corne
     if (y[1] < h) {
         b = plane.foot() + h * x[1] / (h - y[1]);
     } else {
-        const double level = x[1] + (x[0] - x[1]) * ((y[1] - h) / rise);
-        b = level < 0 ? -kInfinite : kInfinite;
+        b = at_light < 0 ? -kInfinite : kInfinite;
     }
     return {std::min(a, b), std::max(a, b)};
 }
