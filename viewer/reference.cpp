@@ -203,6 +203,10 @@ glm::dvec3 ReferenceRenderer::radiance(const glm::dvec3& origin, const glm::dvec
     for (const PointLight& light : world_.scene().lights) {
         sum += airlight_along(light, path, options_.quadrature * largest(sum), counts);
     }
+    if (!world_.particle_irradiance()) return sum;
+    for (const RayPiece& piece : path.pieces) {
+        sum += piece.throughput * particles_along(piece, counts);
+    }
     return sum;
 }
 

@@ -8,8 +8,8 @@
 #include <map>
 #include <string>
 
-#include "core/error.h"
 #include "envmap/io.h"
+#include "medium/shafts.h"
 #include "prt/mesh_io.h"
 #include "prt/ray_scene.h"
 #include "sh/brdf_file.h"
@@ -28,11 +28,6 @@ Mesh placed(Mesh mesh, const glm::dmat4& transform) {
         for (glm::uvec3& triangle : mesh.triangles) std::swap(triangle.y, triangle.z);
     }
     return mesh;
-}
-
-// What the format of scenes has and no renderer does yet.
-void refuse_unknown(const Scene& scene) {
-    if (scene.shafts) throw Error(ErrorCode::data, "shafts cannot be rendered yet", scene.path);
 }
 
 // Objects of the same file share its table.
@@ -59,7 +54,7 @@ std::vector<SurfaceMaterial> read_materials(const std::vector<SceneObject>& obje
 
 World::World(const Scene& scene, const WorldOptions& options)
     : scene_(scene), media_(scene.media), slabs_(scene.media, scene.path) {
-    refuse_unknown(scene);
+    if (scene.shafts) particles_ = std::make_unique<ParticleIrradianceTable>();
     MeshReadOptions read;
     read.max_memory = options.max_memory;
     for (const SceneObject& object : scene.objects) {

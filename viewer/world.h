@@ -18,6 +18,7 @@
 namespace airlight {
 
 class EnvironmentSampler;
+class ParticleIrradianceTable;
 class RayScene;
 class RayShadows;
 
@@ -38,7 +39,7 @@ struct WorldOptions {
 class World {
   public:
     /// Reads meshes and the environment map. Throws what their readers throw, naming the file, and
-    /// Error(data) for slabs that overlap and for shafts, which are not rendered yet.
+    /// Error(data) for slabs that overlap.
     explicit World(const Scene& scene, const WorldOptions& options = {});
     ~World();
     World(World&&) noexcept;
@@ -63,6 +64,8 @@ class World {
     /// Radiance of the environment in a direction, black without one: the map's pixel, turned and
     /// scaled.
     glm::dvec3 environment(const glm::dvec3& direction) const;
+    /// Null without shafts.
+    const ParticleIrradianceTable* particle_irradiance() const { return particles_.get(); }
     /// Null without an environment.
     const EnvironmentSampler* sampler() const { return sampler_.get(); }
 
@@ -74,6 +77,7 @@ class World {
     std::vector<SurfaceMaterial> materials_;
     std::unique_ptr<RayScene> rays_;
     std::unique_ptr<RayShadows> shadows_;
+    std::unique_ptr<ParticleIrradianceTable> particles_;
     std::unique_ptr<EnvironmentSampler> sampler_;
 };
 

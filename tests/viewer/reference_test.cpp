@@ -16,6 +16,7 @@
 #include "medium/airlight.h"
 #include "medium/gaussian_airlight.h"
 #include "medium/phase_airlight.h"
+#include "medium/shafts.h"
 #include "medium/surface_shading.h"
 #include "tests/core/scratch_directory.h"
 #include "viewer/camera.h"
@@ -83,6 +84,10 @@ class ReferenceTest : public testing::Test {
                 if (i + 1 < rings) out << "f " << a << " " << b + sides << " " << a + sides << "\n";
             }
         }
+    }
+    /// A triangle of 200 m that looks up, askew.
+    void write_wall(const std::string& name) const {
+        std::ofstream(directory_ / name) << "v -99 -20 -99\nv 0 9 99\nv 99 -9 -99\nf 1 2 3\n";
     }
     Scene shady_scene(std::uint64_t seed) const;
 
@@ -276,6 +281,12 @@ Scene ReferenceTest::shady_scene(std::uint64_t seed) const {
     };
     Scene scene;
     add_triangle(scene, 1, LambertMaterial{});
+    // One that reaches from behind rays to beyond lamps.
+    write_wall("wall.obj");
+    SceneObject wall;
+    wall.mesh = file("wall.obj");
+    wall.transform[3] = {0, between(-2, 2), 0, 1};
+    scene.objects.push_back(wall);
     for (int i = 0; i < 4; ++i) {
         const std::string name = "ball" + std::to_string(i) + ".obj";
         write_ball(name, 3 << i);
@@ -410,6 +421,52 @@ TEST_F(ReferenceTest, ClosedFormsAndQuadratureSumTheSameShadows) {
         }
     }
     EXPECT_NEAR(by_points, by_parts, 0.01 * by_parts);
+}
+
+TEST_F(ReferenceTest, ParticlesSendTheLightThatTheMarchOfShaftsTendsTo) {
+    Scene scene;
+    scene.media = {uniform(0.05, 0.01)};
+    scene.lights = {{{1.3, 2.2, 4.1}, glm::dvec3(3)}};
+    scene.shafts = SceneShafts{};
+    ReferenceOptions options;
+    options.quadrature = 1e-6;
+    ShaftOptions march;
+    march.steps = 40000;
+    march.least_transmittance = 1e-7;
+    for (const bool walled : {false, true}) {
+        if (walled) add_triangle(scene, 2, LambertMaterial{});
+        const World world(scene);
+        const ReferenceRenderer renderer(world, options);
+        const auto visible = [&](const glm::dvec3& x) {
+            return !world.is_blocked(x, scene.lights[0].position);
+        };
+        double expected = 0, found = 0;
+        for (int i = 0; i < 6; ++i) {
+            const glm::dvec3 origin(0.3 * i, 0.5, 9 - 2.5 * i);
+            const glm::dvec3 direction = glm::normalize(glm::dvec3(0.2 - 0.1 * i, 0.1, -1));
+            const ShaftMedium medium = {0.05, 0.01, 1 / (4 * kPi)};
+            const ShaftLight light = {scene.lights[0].position, 3};
+            const ShaftRay ray = {origin, direction, 12};
+            march.particles = true;
+            const double both =
+                shaft_radiance(medium, light, ray, march, visible, ParticleIrradianceTable());
+            march.particles = false;
+            const double fog = shaft_radiance(medium, light, ray, march, visible);
+            const double ours = renderer.light_of_particles(origin, direction, 12, counts_).x;
+            // The march's own steps at the borders of cells and shadows.
+            EXPECT_NEAR(ours, both - fog, 2e-3 * (both - fog)) << i;
+            expected += both - fog;
+            found += ours;
+            EXPECT_NEAR(renderer.airlight_of_lights(origin, direction, 12, counts_).x, fog,
+                        2e-3 * fog);
+            SampleStream stream(0, 0);
+            if (!walled) {
+                EXPECT_GT(renderer.radiance(origin, direction, stream, counts_).x, both - fog);
+            }
+        }
+        EXPECT_GT(expected, 0);
+        EXPECT_NEAR(found, expected, 5e-4 * expected);
+    }
 }
 
 TEST_F(ReferenceTest, PicturesAreTheSameForAnyNumberOfThreads) {
