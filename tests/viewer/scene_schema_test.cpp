@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -171,6 +172,21 @@ TEST(SceneSchema, TakesWhatTheReaderTakes) {
     }
     EXPECT_GT(taken, 300);
     EXPECT_GT(refused, 2000);
+}
+
+TEST(SceneSchema, TakesTheExamples) {
+    std::ifstream file(AIRLIGHT_SCENE_SCHEMA);
+    const Schema schema(Json::parse(file));
+    int examples = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(AIRLIGHT_SCENES)) {
+        if (entry.path().extension() != ".json") continue;
+        const std::string path = entry.path().string();
+        std::ifstream scene(path);
+        EXPECT_TRUE(schema.takes(Json::parse(scene))) << path;
+        EXPECT_NO_THROW(read_scene(path)) << path;
+        ++examples;
+    }
+    EXPECT_GE(examples, 15);
 }
 
 }  // namespace
