@@ -24,13 +24,12 @@ build/release/airlight sheet "$map" "out/demo/$name-T0.5.exr" "out/demo/$name-T1
 
 # What the vertices of the mesh see, baked once; then any map lights it.
 lit="out/demo/knot.png"
-build/release/airlight bake data/knot.ply -o out/demo/knot.prt --rays 2048 --force
+build/release/airlight bake data/knot.ply -o out/demo/knot.prt --tolerance 0.003 --force
 build/release/airlight sheet "$map" "out/demo/$name-T1.exr" --prt out/demo/knot.prt \
     --mesh data/knot.ply --view 185,20 --tile-width 640 -o out/demo/knot.png --force
 bunny=/usr/share/glmark2/models/bunny.obj
 if [ -r "$bunny" ]; then
-    # -q: with the ground, many vertices rightly see less than half of their hemisphere.
-    build/release/airlight bake -q "$bunny" -o out/demo/bunny.prt --ground -0.99 --force
+    build/release/airlight bake "$bunny" -o out/demo/bunny.prt --ground -0.99 --force
     build/release/airlight sheet "$map" "out/demo/$name-T1.exr" --prt out/demo/bunny.prt \
         --mesh "$bunny" --view 20,14 --tile-width 640 -o out/demo/bunny.png --force
     lit="$lit out/demo/bunny.png"
