@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/ball.h"
 #include "bench/rounds.h"
 #include "core/threads.h"
 #include "viewer/camera.h"
@@ -25,25 +26,6 @@ struct Contender {
     const char* name;
     ReferenceOptions options;
 };
-
-void write_ball(const std::string& path, int rings) {
-    std::ofstream out(path);
-    const int sides = 2 * rings;
-    for (int i = 0; i <= rings; ++i) {
-        for (int j = 0; j < sides; ++j) {
-            const double theta = kPi * i / rings, phi = 2 * kPi * j / sides;
-            out << "v " << std::sin(theta) * std::cos(phi) << " " << std::cos(theta) << " "
-                << std::sin(theta) * std::sin(phi) << "\n";
-        }
-    }
-    for (int i = 0; i < rings; ++i) {
-        for (int j = 0; j < sides; ++j) {
-            const int a = i * sides + j + 1, b = i * sides + (j + 1) % sides + 1;
-            if (i > 0) out << "f " << a << " " << b << " " << b + sides << "\n";
-            if (i + 1 < rings) out << "f " << a << " " << b + sides << " " << a + sides << "\n";
-        }
-    }
-}
 
 SceneMedium fog(double density) {
     SceneMedium medium;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <random>
 #include <string>
 
@@ -39,6 +40,35 @@ inline std::string mutate(std::string bytes, std::mt19937& random) {
         }
     }
     return bytes;
+}
+
+/// One to three changes to a JSON text: other bytes, digits, pieces of its grammar, pieces taken
+/// out or repeated.
+inline std::string mutate_json(std::string text, std::mt19937& random) {
+    const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };
+    constexpr const char* kPieces[] = {"[", "]", "{",     "}",   "\"",   ",",
+                                       ":", "-", "1e999", "NaN", "null", "\xff"};
+    for (std::size_t change = 1 + below(3); change > 0 && !text.empty(); --change) {
+        const std::size_t at = below(text.size());
+        switch (below(5)) {
+            case 0:
+                text[at] = static_cast<char>(random());
+                break;
+            case 1:
+                text.erase(at, 1 + below(8));
+                break;
+            case 2:
+                text.insert(at, kPieces[below(std::size(kPieces))]);
+                break;
+            case 3:
+                text.insert(at, text.substr(below(text.size()), 1 + below(60)));
+                break;
+            default:
+                text[at] = static_cast<char>('0' + below(10));
+                break;
+        }
+    }
+    return text;
 }
 
 }  // namespace airlight

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "core/error.h"
+#include "tests/core/mutate.h"
 #include "tests/core/scratch_directory.h"
 
 namespace airlight {
@@ -293,32 +294,9 @@ TEST_F(BadShFile, CannotBeReadOrIsTooLarge) {
 
 TEST_F(BadShFile, IsReadOrRefusedWhateverIsDamaged) {
     std::mt19937 random(3);
-    const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };
-    const char* pieces[] = {"[", "]", "{",     "}",   "\"",   ",",
-                            ":", "-", "1e999", "NaN", "null", "\xff"};
     int taken = 0;
     for (int round = 0; round < 5000; ++round) {
-        std::string text = text_;
-        for (std::size_t change = 1 + below(3); change > 0 && !text.empty(); --change) {
-            const std::size_t at = below(text.size());
-            switch (below(5)) {
-                case 0:
-                    text[at] = static_cast<char>(random());
-                    break;
-                case 1:
-                    text.erase(at, 1 + below(8));
-                    break;
-                case 2:
-                    text.insert(at, pieces[below(std::size(pieces))]);
-                    break;
-                case 3:
-                    text.insert(at, text.substr(below(text.size()), 1 + below(30)));
-                    break;
-                default:
-                    text[at] = static_cast<char>('0' + below(10));
-                    break;
-            }
-        }
+        const std::string text = mutate_json(text_, random);
         try {
             const ShFile file = parse_sh_file(text, "a.json");
             ++taken;

@@ -11,6 +11,7 @@
 #include <limits>
 #include <random>
 
+#include "bench/ball.h"
 #include "core/threads.h"
 #include "envmap/io.h"
 #include "medium/airlight.h"
@@ -66,25 +67,6 @@ class ReferenceTest : public testing::Test {
         scene.objects.push_back(object);
     }
 
-    /// A sphere of radius 1 with `rings` rings of triangles.
-    void write_ball(const std::string& name, int rings) const {
-        std::ofstream out(directory_ / name);
-        const int sides = 2 * rings;
-        for (int i = 0; i <= rings; ++i) {
-            for (int j = 0; j < sides; ++j) {
-                const double theta = kPi * i / rings, phi = 2 * kPi * j / sides;
-                out << "v " << std::sin(theta) * std::cos(phi) << " " << std::cos(theta) << " "
-                    << std::sin(theta) * std::sin(phi) << "\n";
-            }
-        }
-        for (int i = 0; i < rings; ++i) {
-            for (int j = 0; j < sides; ++j) {
-                const int a = i * sides + j + 1, b = i * sides + (j + 1) % sides + 1;
-                if (i > 0) out << "f " << a << " " << b << " " << b + sides << "\n";
-                if (i + 1 < rings) out << "f " << a << " " << b + sides << " " << a + sides << "\n";
-            }
-        }
-    }
     /// A triangle of 200 m that looks up, askew.
     void write_wall(const std::string& name) const {
         std::ofstream(directory_ / name) << "v -99 -20 -99\nv 0 9 99\nv 99 -9 -99\nf 1 2 3\n";
@@ -289,7 +271,7 @@ Scene ReferenceTest::shady_scene(std::uint64_t seed) const {
     scene.objects.push_back(wall);
     for (int i = 0; i < 4; ++i) {
         const std::string name = "ball" + std::to_string(i) + ".obj";
-        write_ball(name, 3 << i);
+        write_ball(directory_ / name, 3 << i);
         SceneObject ball;
         ball.mesh = file(name);
         ball.transform = glm::dmat4(between(0.1, 1));

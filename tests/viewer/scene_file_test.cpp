@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "tests/core/mutate.h"
 #include "tests/core/scratch_directory.h"
 #include "tests/viewer/full_scene.h"
 #include "viewer/blob_file.h"
@@ -306,29 +307,8 @@ TEST_F(SceneFileTest, TakesManyBlobsAndLights) {
 
 TEST_F(SceneFileTest, IsReadOrRefusedWhateverIsDamaged) {
     std::mt19937 random(5);
-    const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };
-    const char* pieces[] = {"[", "]", "{", "}", "\"", ",", ":", "-", "1e999", "null", "\xff"};
     for (int round = 0; round < 3000; ++round) {
-        std::string text = kFullScene;
-        for (std::size_t change = 1 + below(3); change > 0; --change) {
-            const std::size_t at = below(text.size());
-            switch (below(5)) {
-                case 0:
-                    text[at] = static_cast<char>(random());
-                    break;
-                case 1:
-                    text.erase(at, 1 + below(8));
-                    break;
-                case 2:
-                    text.insert(at, pieces[below(std::size(pieces))]);
-                    break;
-                case 3:
-                    text.insert(at, text.substr(below(text.size()), 1 + below(60)));
-                    break;
-                default:
-                    text[at] = static_cast<char>('0' + below(10));
-            }
-        }
+        const std::string text = mutate_json(kFullScene, random);
         try {
             parse(text);
         } catch (const Error& error) {
