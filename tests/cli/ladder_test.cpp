@@ -330,8 +330,9 @@ TEST(Ladder, ChoicesOfDirectionsKeepTheirOrder) {
         const double visibility = std::stod(row.at("rms_visibility_error"));
         EXPECT_GT(std::stod(row.at("us_per_vertex")), 0);
         EXPECT_GT(std::stod(row.at("max_transfer_error")), 0);
+        // Four times the rays; of the adaptive method, a stricter tolerance.
         if (before.count(method)) {
-            EXPECT_LT(transfer, before[method] / 1.6) << method;
+            EXPECT_LT(transfer, before[method] / (method == "adaptive" ? 1 : 1.6)) << method;
         }
         before[method] = transfer;
         if (row.at("rays") == "1024") {
@@ -343,7 +344,7 @@ TEST(Ladder, ChoicesOfDirectionsKeepTheirOrder) {
     EXPECT_LT(before["fibonacci"], before["owen-sobol"]);
     EXPECT_LT(before["owen-sobol"], before["stratified"]);
     EXPECT_LT(3 * before["stratified"], before["random"]);
-    EXPECT_LT(before["adaptive"], 1e-3);
+    EXPECT_LT(before["adaptive"], 5e-4);
     for (const char* plot : {"transfer", "transfer-rays", "visibility", "visibility-rays"}) {
         EXPECT_EQ(read_bytes(scratch / (plot + std::string(".svg"))).rfind("<svg ", 0), 0u);
     }
