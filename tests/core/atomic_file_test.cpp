@@ -123,8 +123,9 @@ TEST_P(AtomicFileKinds, AKilledWriterLeavesAWholeFile) {
         versions_seen += content[0] != 'a';
     }
     EXPECT_GT(versions_seen, 0) << "no writer ever finished a file";
-    // Being killed between linkat and rename, a few microseconds in each write, leaves one name.
-    EXPECT_LE(directory.entries().size(), unnamed ? 3u : 21u);
+    // Being killed between linkat and rename, about a twentieth of each write, leaves one name:
+    // three of twenty were seen. Named files are left at nearly every kill.
+    EXPECT_LE(directory.entries().size(), unnamed ? 9u : 21u);
 }
 
 TEST(AtomicFile, NamesWhatIsWrongWithTheTarget) {
