@@ -24,7 +24,7 @@ build/release/airlight sheet "$map" "out/demo/$name-T0.5.exr" "out/demo/$name-T1
 
 # What the vertices of the mesh see, baked once; then any map lights it.
 lit="out/demo/knot.png"
-build/release/airlight bake data/knot.ply -o out/demo/knot.prt --tolerance 0.003 --force
+build/release/airlight bake data/knot.ply -o out/demo/knot.prt --tolerance 0.01 --force
 build/release/airlight sheet "$map" "out/demo/$name-T1.exr" --prt out/demo/knot.prt \
     --mesh data/knot.ply --view 185,20 --tile-width 640 -o out/demo/knot.png --force
 bunny=/usr/share/glmark2/models/bunny.obj
