@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "viewer/phase_file.h"
 
@@ -160,6 +161,19 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
     } else if (shapes_.size() == 1) {
         for (const Density& density : shapes_[0].parts) {
             if (const auto* blob = std::get_if<GaussianBlob>(&density)) mark_blob(*blob);
+            // Around where the ray is deepest, in steps from less than a scale height to many: the
+            // layer may be thin beside the distance to a lamp.
+            double deepest = 0, height = 0;
+            if (const auto* layer = std::get_if<ExponentialHeightDensity>(&density)) {
+                height = std::abs(layer->scale_height);
+            } else if (const auto* shell = std::get_if<SphericalExponentialDensity>(&density)) {
+                height = shell->scale_height;
+                deepest = std::max(0.0, glm::dot(shell->center - origin, direction));
+            }
+            for (double step = height / 4; height > 0 && step < 5000 * height; step *= 4) {
+                add(deepest - step);
+                add(deepest + step);
+            }
         }
     }
 }

@@ -104,6 +104,34 @@ TEST_F(ReferenceTest, AirlightOfUniformFogIsTheClosedForm) {
     }
 }
 
+TEST_F(ReferenceTest, AnAtmosphereIsFoundHoweverFarTheLampIs) {
+    Scene scene;
+    SceneMedium air;
+    air.kind = SceneAtmosphere{{0, -6371000, 0}, 6371000, glm::dvec3(1e-5), 8000, glm::dvec3(1)};
+    scene.media = {air};
+    const double far = 1e10;
+    scene.lights = {{{0.6 * far, 0.8 * far, 0}, glm::dvec3(far * far)}};
+    const World world(scene);
+    ReferenceOptions options;
+    options.quadrature = 1e-6;
+    const ReferenceRenderer renderer(world, options);
+    for (const glm::dvec3& direction : {glm::dvec3(0, 1, 0), glm::dvec3(0, 0.6, 0.8),
+                                        glm::dvec3(-0.8, 0.6, 0), glm::dvec3(0, 0.02, 1)}) {
+        const glm::dvec3 unit = glm::normalize(direction), origin(0, 100, 0);
+        // Steps of 100 m up to 2000 km, where nothing is left.
+        double expected = 0;
+        for (int i = 0; i < 20000; ++i) {
+            const double t = 100 * (i + 0.5);
+            const glm::dvec3 x = origin + t * unit, to_light(0.6, 0.8, 0);
+            expected += 100 * world.media().density(x).x / (4 * kPi) *
+                        std::exp(-world.media().depth(origin, unit, t).x -
+                                 world.media().depth(x, to_light, far).x);
+        }
+        EXPECT_NEAR(renderer.airlight_of_lights(origin, unit, kInfinite, counts_).x, expected,
+                    2e-4 * expected);
+    }
+}
+
 TEST_F(ReferenceTest, PhaseFunctionsTurnTheRightWay) {
     Scene scene;
     scene.media = {uniform(0.3, 0)};
