@@ -123,9 +123,9 @@ TEST_P(AtomicFileKinds, AKilledWriterLeavesAWholeFile) {
         versions_seen += content[0] != 'a';
     }
     EXPECT_GT(versions_seen, 0) << "no writer ever finished a file";
-    // Being killed between linkat and rename, about a twentieth of each write, leaves one name:
-    // three of twenty were seen. Named files are left at nearly every kill.
-    EXPECT_LE(directory.entries().size(), unnamed ? 9u : 21u);
+    // Being killed between linkat and rename leaves a name: mostly none of twenty kills does, three
+    // were seen on a busy machine. Of named files 9 to 12 are left.
+    EXPECT_LE(directory.entries().size(), unnamed ? 7u : 21u);
 }
 
 TEST(AtomicFile, NamesWhatIsWrongWithTheTarget) {
