@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "bench/rounds.h"
+#include "cli/ladder_sphere.h"
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/threads.h"
@@ -27,7 +28,6 @@
 #include "prt/embree_scene.h"
 #include "prt/hemisphere.h"
 #include "prt/mesh_io.h"
-#include "prt/mesh_normals.h"
 #include "prt/morton.h"
 #include "sh/basis.h"
 #include "sh/index.h"
@@ -37,31 +37,6 @@ namespace {
 
 constexpr std::size_t kBlock = 512;
 constexpr int kContenders = 5;
-
-Mesh bumpy_sphere(unsigned steps) {
-    Mesh mesh;
-    const unsigned columns = 2 * steps;
-    for (unsigned i = 0; i <= steps; ++i) {
-        for (unsigned j = 0; j < columns; ++j) {
-            const double theta = kPi * i / steps, phi = 2 * kPi * j / columns;
-            const double r = 1 + 0.12 * std::sin(9 * theta) * std::sin(11 * phi) * std::sin(theta);
-            mesh.positions.emplace_back(r * std::sin(theta) * std::sin(phi), r * std::cos(theta),
-                                        r * std::sin(theta) * std::cos(phi));
-        }
-    }
-    const auto at = [&](unsigned i, unsigned j) { return i * columns + j % columns; };
-    for (unsigned i = 0; i < steps; ++i) {
-        for (unsigned j = 0; j < columns; ++j) {
-            if (i > 0) mesh.triangles.emplace_back(at(i, j), at(i + 1, j), at(i, j + 1));
-            if (i + 1 < steps) {
-                mesh.triangles.emplace_back(at(i, j + 1), at(i + 1, j), at(i + 1, j + 1));
-            }
-        }
-    }
-    MeshReport report;
-    compute_normals(mesh, {}, report);
-    return mesh;
-}
 
 struct Contest {
     const Mesh& mesh;
@@ -241,7 +216,7 @@ void print_errors(const Mesh& mesh, const RayScene& scene, BakeOptions options,
 void run(const std::string& file, unsigned steps, std::size_t most, int rounds, int truth_rays,
          const BakeOptions& options) {
     const ThreadLimit limit(1);
-    const Mesh mesh = file.empty() ? bumpy_sphere(steps) : read_mesh(file);
+    const Mesh mesh = file.empty() ? bumpy_sphere(steps, 0.12) : read_mesh(file);
     const Seconds build = measure([&] { RayScene{mesh}; });
     const RayScene scene(mesh);
     std::vector<std::uint32_t> vertices = morton_order(mesh);

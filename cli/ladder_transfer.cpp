@@ -10,10 +10,9 @@
 
 #include "cli/ladder_effects.h"
 #include "cli/ladder_rungs.h"
-#include "core/constants.h"
+#include "cli/ladder_sphere.h"
 #include "core/threads.h"
 #include "prt/bake.h"
-#include "prt/mesh_normals.h"
 #include "prt/morton.h"
 #include "sh/index.h"
 
@@ -22,33 +21,6 @@ namespace {
 
 constexpr int kOrder = 6, kTruthRays = 65536, kLongestRun = 16384, kRounds = 2;
 constexpr std::size_t kVertices = 256, kNeighbours = 32;
-
-// A sphere with hollows, of whose rays a part is blocked as it is on scanned statues.
-Mesh pitted_sphere() {
-    constexpr unsigned kRings = 72, kColumns = 2 * kRings;
-    Mesh mesh;
-    for (unsigned i = 0; i <= kRings; ++i) {
-        for (unsigned j = 0; j < kColumns; ++j) {
-            const double theta = kPi * i / kRings, phi = 2 * kPi * j / kColumns;
-            const double sine = std::sin(theta);
-            const double r = 1 + 0.09 * std::sin(9 * theta) * std::sin(11 * phi) * sine;
-            mesh.positions.emplace_back(r * sine * std::sin(phi), r * std::cos(theta),
-                                        r * sine * std::cos(phi));
-        }
-    }
-    const auto at = [&](unsigned i, unsigned j) { return i * kColumns + j % kColumns; };
-    for (unsigned i = 0; i < kRings; ++i) {
-        for (unsigned j = 0; j < kColumns; ++j) {
-            if (i > 0) mesh.triangles.emplace_back(at(i, j), at(i + 1, j), at(i, j + 1));
-            if (i + 1 < kRings) {
-                mesh.triangles.emplace_back(at(i, j + 1), at(i + 1, j), at(i + 1, j + 1));
-            }
-        }
-    }
-    MeshReport report;
-    compute_normals(mesh, {}, report);
-    return mesh;
-}
 
 struct Rows {
     std::vector<float> visibility, transfer;
@@ -116,7 +88,7 @@ double square(double x) {
 }
 
 void prepare(Measurement& m) {
-    m.mesh = pitted_sphere();
+    m.mesh = bumpy_sphere(72, 0.09);
     m.scene = std::make_unique<RayScene>(m.mesh);
     // Runs of neighbours, as a whole bake has them, spread over the mesh.
     const std::vector<std::uint32_t> order = morton_order(m.mesh);

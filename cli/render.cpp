@@ -70,13 +70,7 @@ void write_display(const std::string& path, const Image& image, double stops, bo
     sheet.height = image.height;
     sheet.pixels.resize(image.pixels.size());
     const double exposure = automatic_exposure(image) * std::exp2(stops);
-    for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
-        double display[3];
-        tone_map(image.pixels.data() + i, exposure, display);
-        for (std::size_t c = 0; c < 3; ++c) {
-            sheet.pixels[i + c] = static_cast<std::uint8_t>(std::lround(255 * display[c]));
-        }
-    }
+    tone_map(image.pixels.data(), image.pixels.size() / 3, exposure, sheet.pixels.data());
     write_png(path, sheet, force);
 }
 

@@ -187,4 +187,18 @@ std::vector<JsonFields> JsonFields::objects(const char* key) const {
     return fields;
 }
 
+JsonFields versioned_fields(const JsonValue& root, const char* key, int version,
+                            const std::string& what, const std::string& file) {
+    if (root.find(key) == nullptr) {
+        throw Error(ErrorCode::data, fmt::format("is no {}: the field {} is missing", what, key),
+                    file);
+    }
+    JsonFields fields(root, "", file);
+    const JsonValue& value = fields.at(key);
+    if (!value.is_integer() || value.number() != version) {
+        fields.refuse_value(key, value, fmt::format("version {}, the only one known", version));
+    }
+    return fields;
+}
+
 }  // namespace airlight

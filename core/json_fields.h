@@ -24,7 +24,6 @@ class JsonFields {
     JsonFields(const JsonValue& object, std::string path, std::string file);
 
     const std::string& file() const { return file_; }
-    int line() const { return object_->line(); }
 
     /// Refuses fields that are not among `keys`, with the nearest of those that are.
     void know(std::initializer_list<const char*> keys) const;
@@ -65,5 +64,10 @@ class JsonFields {
     const JsonValue* object_;
     std::string path_, file_;
 };
+
+/// The fields of a text whose format, `what` ("scene"), names its version in the field `key`.
+/// Throws Error(data) for what lacks that field or has another version.
+JsonFields versioned_fields(const JsonValue& root, const char* key, int version,
+                            const std::string& what, const std::string& file);
 
 }  // namespace airlight

@@ -131,6 +131,16 @@ void tone_map(const float rgb[3], double exposure, double display[3]) {
     for (int c = 0; c < 3; ++c) display[c] = srgb(std::clamp(scale * positive[c], 0.0, 1.0));
 }
 
+void tone_map(const float* rgb, std::size_t count, double exposure, std::uint8_t* display) {
+    for (std::size_t i = 0; i < count; ++i, rgb += 3) {
+        double values[3];
+        tone_map(rgb, exposure, values);
+        for (const double value : values) {
+            *display++ = static_cast<std::uint8_t>(std::lround(255 * value));
+        }
+    }
+}
+
 Image scale_to(const Image& map, int width, int height) {
     const std::vector<Span> columns = spans(map.width, width), rows = spans(map.height, height);
     const auto channels = static_cast<std::size_t>(map.channels);
@@ -176,16 +186,9 @@ Sheet make_sheet(const std::vector<SheetTile>& tiles, double exposure, int colum
         const int left = kGap + i % columns * (width + kGap);
         const int top = kGap + i / columns * (height + kLabelHeight + kGap);
         for (int row = 0; row < height; ++row) {
-            const float* rgb = picture.row(row);
-            std::uint8_t* out = sheet.pixels.data() +
-                                (static_cast<std::size_t>(top + row) * sheet.width + left) * 3;
-            for (int column = 0; column < width; ++column, rgb += 3) {
-                double display[3];
-                tone_map(rgb, exposure, display);
-                for (const double value : display) {
-                    *out++ = static_cast<std::uint8_t>(std::lround(255 * value));
-                }
-            }
+            tone_map(picture.row(row), static_cast<std::size_t>(width), exposure,
+                     sheet.pixels.data() +
+                         (static_cast<std::size_t>(top + row) * sheet.width + left) * 3);
         }
     }
     sheet.labelled = draw_labels(tiles, columns, sheet);

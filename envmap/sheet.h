@@ -25,6 +25,9 @@ double automatic_exposure(const Image& map);
 /// colours scaled along and clipped, then the sRGB transfer curve. Negative values count as 0.
 void tone_map(const float rgb[3], double exposure, double display[3]);
 
+/// The same for `count` pixels one after the other, as bytes.
+void tone_map(const float* rgb, std::size_t count, double exposure, std::uint8_t* display);
+
 /// A picture scaled to width x height by averaging the linear values over each new pixel's area.
 Image scale_to(const Image& map, int width, int height);
 

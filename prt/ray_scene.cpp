@@ -352,14 +352,9 @@ std::size_t RayScene::find_hits(const glm::vec3& origin, const glm::mat3& frame,
     return found;
 }
 
-glm::vec3 RayScene::place(const glm::dvec3& position) const {
-    const glm::dvec3 q = (position - centre_) * scale_;
-    return {clamped(q.x), clamped(q.y), clamped(q.z)};
-}
-
 std::optional<RayHit> RayScene::find_nearest(const glm::dvec3& origin, const glm::dvec3& direction,
                                              double distance) const {
-    const glm::vec3 o = place(origin), d(direction);
+    const glm::vec3 o = point(origin), d(direction);
     if (!is_finite(o) || !is_finite(d) || !(distance > 0)) return {};
     RTCRayHit full = {};
     full.ray = {o.x,        o.y, o.z, 0, d.x, d.y, d.z, 0, static_cast<float>(distance * scale_),
@@ -377,7 +372,7 @@ std::optional<RayHit> RayScene::find_nearest(const glm::dvec3& origin, const glm
 }
 
 bool RayScene::is_blocked(const glm::dvec3& from, const glm::dvec3& to) const {
-    const glm::vec3 o = place(from), end = place(to);
+    const glm::vec3 o = point(from), end = point(to);
     const glm::vec3 d = end - o;
     if (!is_finite(o) || !is_finite(d)) return false;
     if (ground_ && (o.y < *ground_ || end.y < *ground_)) return true;

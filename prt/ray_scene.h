@@ -120,7 +120,6 @@ class RayScene {
     const detail::EmbreeScene& embree() const { return *embree_; }
 
   private:
-    glm::vec3 place(const glm::dvec3& position) const;
     template <class Trace>
     void for_packets(const glm::vec3& origin, const glm::mat3& frame, std::size_t count,
                      const float* x, const float* y, const float* z, const Trace& trace) const;

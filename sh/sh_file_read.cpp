@@ -132,16 +132,8 @@ ShFileSun sun_of(const JsonFields& fields) {
 
 ShFile parse_sh_file(const std::string& text, const std::string& name) {
     const JsonValue json = parse_json(text, name, kDeepest);
-    if (json.find("airlight_sh") == nullptr) {
-        throw Error(ErrorCode::data, "is no coefficient file: the field airlight_sh is missing",
-                    name);
-    }
-    const JsonFields fields(json, "", name);
-    const JsonValue& version = fields.at("airlight_sh");
-    if (!version.is_integer() || version.number() != detail::kShFileVersion) {
-        fields.refuse_value("airlight_sh", version,
-                            fmt::format("version {}, the only one known", detail::kShFileVersion));
-    }
+    const JsonFields fields =
+        versioned_fields(json, "airlight_sh", detail::kShFileVersion, "coefficient file", name);
     fields.know({"airlight_sh", "quantity", "unit", "convention", "frame", "channels", "order",
                  "map", "fog", "window", "sun", "coefficients"});
     expect(fields, "quantity", detail::kShQuantity);

@@ -14,10 +14,6 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-double largest(const glm::dvec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
-
 struct Collision {
     double t, pdf;
 };

@@ -9,14 +9,6 @@
 #include "viewer/reference.h"
 
 namespace airlight {
-namespace {
-
-double largest(const glm::dvec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
-
-}  // namespace
-
 // sum_m sigma_s,m p_m at a point, for light that travels along `incoming`.
 glm::dvec3 ReferenceRenderer::scattered(const glm::dvec3& x, const glm::dvec3& incoming,
                                         const glm::dvec3& outgoing) const {

@@ -9,14 +9,6 @@
 #include "viewer/reference.h"
 
 namespace airlight {
-namespace {
-
-double largest(const glm::dvec3& v) {
-    return std::max({v.x, v.y, v.z});
-}
-
-}  // namespace
-
 // Of an arrival's way within the slab.
 glm::dvec3 ReferenceRenderer::slab_depth(const Slab& slab, const glm::dvec3& x,
                                          const SlabArrival& way) const {

@@ -348,15 +348,7 @@ const char* medium_type(const SceneMedium& medium) {
 Scene parse_scene(const std::string& text, const std::string& path, std::size_t max_memory) {
     const std::string name = path == "-" ? "standard input" : path;
     const JsonValue json = parse_json(text, name, kDeepest);
-    if (json.find("airlight_scene") == nullptr) {
-        throw Error(ErrorCode::data, "is no scene: the field airlight_scene is missing", name);
-    }
-    const JsonFields root(json, "", name);
-    const JsonValue& version = root.at("airlight_scene");
-    if (!version.is_integer() || version.number() != kSceneVersion) {
-        root.refuse_value("airlight_scene", version,
-                          fmt::format("version {}, the only one known", kSceneVersion));
-    }
+    const JsonFields root = versioned_fields(json, "airlight_scene", kSceneVersion, "scene", name);
     return SceneReader(root, path, max_memory).read();
 }
 

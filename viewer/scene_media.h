@@ -2,6 +2,7 @@
 // The media of a scene, made ready for rays.
 #pragma once
 
+#include <algorithm>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -93,6 +94,11 @@ class SceneMedia {
     std::vector<MediumPart> parts_;
     std::optional<glm::dvec3> everywhere_;
 };
+
+/// The channel that has most.
+inline double largest(const glm::dvec3& colour) {
+    return std::max({colour.x, colour.y, colour.z});
+}
 
 /// e^{-depth}, once where all channels have the same.
 glm::dvec3 transmittance_of(const glm::dvec3& depth);
