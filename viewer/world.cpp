@@ -6,6 +6,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <map>
+#include <mutex>
 #include <string>
 
 #include "envmap/io.h"
@@ -52,9 +53,19 @@ std::vector<SurfaceMaterial> read_materials(const std::vector<SceneObject>& obje
 
 }  // namespace
 
+// What only some effects need.
+struct World::WhenAsked {
+    std::once_flag shadows_built, particles_built;
+    std::unique_ptr<RayShadows> shadows;
+    std::unique_ptr<ParticleIrradianceTable> particles;
+};
+
 World::World(const Scene& scene, const WorldOptions& options)
-    : scene_(scene), media_(scene.media), slabs_(scene.media, scene.path) {
-    if (scene.shafts) particles_ = std::make_unique<ParticleIrradianceTable>();
+    : scene_(scene),
+      media_(scene.media),
+      slabs_(scene.media, scene.path),
+      when_asked_(std::make_unique<WhenAsked>()),
+      max_memory_(options.max_memory) {
     MeshReadOptions read;
     read.max_memory = options.max_memory;
     for (const SceneObject& object : scene.objects) {
@@ -67,9 +78,6 @@ World::World(const Scene& scene, const WorldOptions& options)
         RaySceneOptions rays;
         rays.max_memory = options.max_memory;
         rays_ = std::make_unique<RayScene>(meshes_[0], others, rays);
-        if (!media_.empty() && !scene.lights.empty()) {
-            shadows_ = std::make_unique<RayShadows>(meshes_, options.max_memory);
-        }
     }
     if (scene.environment) {
         ReadOptions map;
@@ -84,6 +92,21 @@ World::World(const Scene& scene, const WorldOptions& options)
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
+
+const RayShadows* World::shadows() const {
+    if (meshes_.empty()) return nullptr;
+    std::call_once(when_asked_->shadows_built, [&] {
+        when_asked_->shadows = std::make_unique<RayShadows>(meshes_, max_memory_);
+    });
+    return when_asked_->shadows.get();
+}
+
+const ParticleIrradianceTable* World::particle_irradiance() const {
+    if (!scene_.shafts) return nullptr;
+    std::call_once(when_asked_->particles_built,
+                   [&] { when_asked_->particles = std::make_unique<ParticleIrradianceTable>(); });
+    return when_asked_->particles.get();
+}
 
 std::size_t World::triangles() const {
     std::size_t sum = 0;

@@ -56,16 +56,16 @@ class World {
                                   double distance) const;
     /// Whether an object lies between two points.
     bool is_blocked(const glm::dvec3& from, const glm::dvec3& to) const;
-    /// The shadows of all objects in media; null without objects, media or point lights.
-    const RayShadows* shadows() const { return shadows_.get(); }
+    /// The shadows of all objects in media; null without objects. Built when first asked for.
+    const RayShadows* shadows() const;
     /// Where rays that leave a point of a surface begin: lifted off it on the side of `face`.
     glm::dvec3 lifted(const WorldHit& hit) const;
 
     /// Radiance of the environment in a direction, black without one: the map's pixel, turned and
     /// scaled.
     glm::dvec3 environment(const glm::dvec3& direction) const;
-    /// Null without shafts.
-    const ParticleIrradianceTable* particle_irradiance() const { return particles_.get(); }
+    /// Null without shafts. Built when first asked for.
+    const ParticleIrradianceTable* particle_irradiance() const;
     /// Null without an environment.
     const EnvironmentSampler* sampler() const { return sampler_.get(); }
 
@@ -76,8 +76,9 @@ class World {
     std::vector<Mesh> meshes_;  ///< in world coordinates
     std::vector<SurfaceMaterial> materials_;
     std::unique_ptr<RayScene> rays_;
-    std::unique_ptr<RayShadows> shadows_;
-    std::unique_ptr<ParticleIrradianceTable> particles_;
+    struct WhenAsked;
+    std::unique_ptr<WhenAsked> when_asked_;
+    std::size_t max_memory_;
     std::unique_ptr<EnvironmentSampler> sampler_;
 };
 
