@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a picture of a scene needs: the effects that run, by which method, and why.
+//
+// An effect is left out when the scene rules it out, or when a bound on what it adds to any pixel
+// is under its share of the tolerance. Renderers take a plan and evaluate what it calls for.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "viewer/effects.h"
+#include "viewer/scene.h"
+#include "viewer/world.h"
+
+namespace airlight {
+
+enum class Engine { reference, fast };
+inline constexpr NamedMethod<Engine> kEngines[] = {{Engine::reference, "reference"},
+                                                   {Engine::fast, "fast"}};
+
+/// What a bound rests on.
+enum class BoundKind {
+    proven,    ///< holds for every pixel
+    measured,  ///< twice the largest error of a sketch of the picture
+};
+
+struct EffectChoice {
+    bool runs = false;
+    std::string reason;  ///< a clause in words
+    std::string rung;    ///< its method; empty where it does not run
+    /// On the error of a pixel over the brightest: of leaving the effect out, or of its method.
+    double bound = 0;
+    BoundKind bound_kind = BoundKind::proven;
+    double cost = 0;  ///< expected nanoseconds of CPU time for a ray of view
+};
+
+struct LampPlan {
+    bool airlight_point = true;      ///< lights media that are not Gaussians, along rays
+    bool airlight_gaussians = true;  ///< lights Gaussians
+    bool surface = true;             ///< reaches surfaces by way of the media
+    bool shafts = true;              ///< objects shade its light in the media
+};
+
+/// How light of the map on a surface is summed by the fast engine.
+enum class SurfaceProduct { none, dot, triple };
+
+struct ObjectPlan {
+    bool glossy = true;  ///< its material has a part that follows the viewer
+    SurfaceProduct product = SurfaceProduct::none;
+    std::string reason;  ///< of both
+};
+
+struct Plan {
+    Engine engine = Engine::reference;
+    double tolerance = 0.01;
+    /// Radiance of the brightest pixel, as a sketch of the scene shows it; 0 where none was needed.
+    double level = 0;
+    bool everything = false;  ///< made with PlanOptions::all
+    std::array<EffectChoice, kEffectCount> effects;
+    std::vector<LampPlan> lights;     ///< one for each of the scene
+    std::vector<ObjectPlan> objects;  ///< likewise
+    std::vector<SceneMedium> media;   ///< what is left of the scene's
+    std::size_t blobs_left_out = 0;   ///< Gaussians that no ray would notice
+    std::size_t media_left_out = 0;
+
+    const EffectChoice& operator[](Effect effect) const {
+        return effects[static_cast<std::size_t>(effect)];
+    }
+    EffectChoice& operator[](Effect effect) { return effects[static_cast<std::size_t>(effect)]; }
+    bool runs(Effect effect) const { return (*this)[effect].runs; }
+    /// Sum of the bounds of all effects.
+    double bound() const;
+};
+
+struct PlanOptions {
+    Engine engine = Engine::reference;
+    double tolerance = 0;               ///< 0: the scene's
+    bool all = false;                   ///< every effect runs, by its most exact and general method
+    EffectSet only = EffectSet::all();  ///< others are left out, whatever the scene calls for
+    int width = 0, height = 0;          ///< of the picture; 0: the camera's
+};
+
+/// The plan for a picture of the world's scene. Deterministic.
+Plan make_plan(const World& world, const PlanOptions& options = {});
+
+}  // namespace airlight
