@@ -22,6 +22,7 @@ BrdfLobe::BrdfLobe(BrdfTable table) : table_(std::move(table)) {
             const double* const values = table_.channel(c) + i * row;
             for (std::size_t k = 0; k < row; ++k) {
                 if (!(values[k] >= 0)) continue;
+                most_ = std::max(most_, values[k] * kBrdfScale[static_cast<std::size_t>(c)]);
                 means[i] += values[k] * kBrdfScale[static_cast<std::size_t>(c)];
                 ++valid;
             }

@@ -18,6 +18,8 @@ class BrdfLobe {
     explicit BrdfLobe(BrdfTable table);
 
     const BrdfTable& table() const { return table_; }
+    /// The largest value in it [1/sr].
+    double most() const { return most_; }
 
     /// f [1/sr]; 0 where a direction is not above the horizon.
     glm::dvec3 evaluate(const glm::dvec3& normal, const glm::dvec3& to_viewer,
@@ -34,6 +36,7 @@ class BrdfLobe {
     double edge(std::size_t cell) const;  ///< cos(theta_h) at which a cell begins
 
     BrdfTable table_;
+    double most_ = 0;
     std::vector<double> sums_;  ///< share of the cells of theta_h before each, and of all
 };
 

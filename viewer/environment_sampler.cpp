@@ -35,13 +35,13 @@ EnvironmentSampler::EnvironmentSampler(Image map, double rotation, double scale)
     for (std::size_t r = 0; r < height; ++r) {
         double* const sums = columns_.data() + r * (width + 1);
         for (std::size_t c = 0; c < width; ++c) {
-            sums[c + 1] = sums[c] + power(static_cast<int>(r), static_cast<int>(c));
+            sums[c + 1] = sums[c] + pixel_power(static_cast<int>(r), static_cast<int>(c));
         }
         rows_[r + 1] = rows_[r] + sums[width];
     }
 }
 
-double EnvironmentSampler::power(int row, int column) const {
+double EnvironmentSampler::pixel_power(int row, int column) const {
     const double sum =
         double(map_.at(row, column, 0)) + map_.at(row, column, 1) + map_.at(row, column, 2);
     return sum / 3 * pixel_solid_angle(row, map_.width, map_.height);
@@ -62,11 +62,16 @@ glm::dvec3 EnvironmentSampler::radiance(const glm::dvec3& direction) const {
                                map_.at(p.row, p.column, 2));
 }
 
+double EnvironmentSampler::brightest() const {
+    const auto most = std::max_element(map_.pixels.begin(), map_.pixels.end());
+    return most == map_.pixels.end() ? 0 : scale_ * double(*most);
+}
+
 double EnvironmentSampler::pdf(const glm::dvec3& direction) const {
     if (!(rows_.back() > 0)) return 0;
     const glm::dvec3 d = to_map(direction);
     const LatLongPixel p = pixel_of({d.x, d.y, d.z}, map_.width, map_.height);
-    return power(p.row, p.column) / rows_.back() /
+    return pixel_power(p.row, p.column) / rows_.back() /
            pixel_solid_angle(p.row, map_.width, map_.height);
 }
 
@@ -86,7 +91,7 @@ EnvironmentSample EnvironmentSampler::sample(double x, double y) const {
     sample.direction = to_world({across * std::sin(phi), y_axis, across * std::cos(phi)});
     const int r = static_cast<int>(row.index), c = static_cast<int>(column.index);
     sample.radiance = scale_ * glm::dvec3(map_.at(r, c, 0), map_.at(r, c, 1), map_.at(r, c, 2));
-    sample.pdf = power(r, c) / rows_.back() / pixel_solid_angle(r, map_.width, map_.height);
+    sample.pdf = pixel_power(r, c) / rows_.back() / pixel_solid_angle(r, map_.width, map_.height);
     return sample;
 }
 

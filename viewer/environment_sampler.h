@@ -26,11 +26,15 @@ class EnvironmentSampler {
     /// x, y in [0, 1) uniform. A black map gives a pdf of 0.
     EnvironmentSample sample(double x, double y) const;
     double pdf(const glm::dvec3& direction) const;
+    /// The largest radiance of a pixel and channel.
+    double brightest() const;
+    /// At least the integral of the radiance over all directions, in any channel.
+    double power() const { return 3 * scale_ * rows_.back(); }
 
   private:
     glm::dvec3 to_map(const glm::dvec3& direction) const;
     glm::dvec3 to_world(const glm::dvec3& direction) const;
-    double power(int row, int column) const;  ///< mean radiance times solid angle, unscaled
+    double pixel_power(int row, int column) const;  ///< mean radiance times solid angle, unscaled
 
     Image map_;
     double cosine_, sine_, scale_;

@@ -64,6 +64,21 @@ glm::dvec3 reflect(const SurfaceMaterial& material, const glm::dvec3& normal,
     return result;
 }
 
+bool is_glossy(const SurfaceMaterial& material) {
+    if (material.table) return true;
+    const auto* phong = std::get_if<PhongMaterial>(&material.kind);
+    return phong && phong->specular != glm::dvec3(0);
+}
+
+double most_reflected(const SurfaceMaterial& material) {
+    if (material.table) return material.table->most();
+    glm::dvec3 most = diffuse_of(material) / kPi;
+    if (const auto* phong = std::get_if<PhongMaterial>(&material.kind)) {
+        most += cosine_power_pdf(1, phong->exponent) * phong->specular;
+    }
+    return std::max({most.x, most.y, most.z});
+}
+
 LobeSample sample_lobe(const SurfaceMaterial& material, const glm::dvec3& normal,
                        const glm::dvec3& to_viewer, SampleStream& stream) {
     const double choice = stream.next(), u = stream.next(), v = stream.next();

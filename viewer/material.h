@@ -25,6 +25,12 @@ struct SurfaceMaterial {
 glm::dvec3 reflect(const SurfaceMaterial& material, const glm::dvec3& normal,
                    const glm::dvec3& to_viewer, const glm::dvec3& to_light);
 
+/// Whether reflect() changes with the viewer.
+bool is_glossy(const SurfaceMaterial& material);
+
+/// The largest value that reflect() can have [1/sr].
+double most_reflected(const SurfaceMaterial& material);
+
 struct LobeSample {
     glm::dvec3 direction{0};
     double pdf = 0;  ///< per steradian

@@ -21,8 +21,8 @@ inline constexpr NamedMethod<Engine> kEngines[] = {{Engine::reference, "referenc
 
 /// What a bound rests on.
 enum class BoundKind {
-    proven,    ///< holds for every pixel
-    measured,  ///< twice the largest error of a sketch of the picture
+    proven,     ///< holds for every pixel
+    estimated,  ///< by a quadrature, or as twice the largest error of a sketch of the picture
 };
 
 struct EffectChoice {
@@ -63,6 +63,8 @@ struct Plan {
     std::vector<SceneMedium> media;   ///< what is left of the scene's
     std::size_t blobs_left_out = 0;   ///< Gaussians that no ray would notice
     std::size_t media_left_out = 0;
+    /// Error of each integral along a ray, relative to it or to what else the ray brings.
+    double quadrature = 1e-4;
 
     const EffectChoice& operator[](Effect effect) const {
         return effects[static_cast<std::size_t>(effect)];
@@ -78,7 +80,8 @@ struct PlanOptions {
     double tolerance = 0;               ///< 0: the scene's
     bool all = false;                   ///< every effect runs, by its most exact and general method
     EffectSet only = EffectSet::all();  ///< others are left out, whatever the scene calls for
-    int width = 0, height = 0;          ///< of the picture; 0: the camera's
+    bool bounds = true;         ///< leaves out what is under the tolerance, which takes a sketch
+    int width = 0, height = 0;  ///< of the picture; 0: the camera's
 };
 
 /// The plan for a picture of the world's scene. Deterministic.

@@ -44,7 +44,8 @@ Bend bend(const glm::dvec3& direction, int axis, double ior_before, double ior_b
 
 }  // namespace
 
-RayPath follow_ray(const World& world, const glm::dvec3& origin, const glm::dvec3& direction) {
+RayPath follow_ray(const World& world, const glm::dvec3& origin, const glm::dvec3& direction,
+                   bool attenuate) {
     const SceneSlabs& slabs = world.slabs();
     const auto& environment = world.scene().environment;
     RayPath path;
@@ -73,9 +74,12 @@ RayPath follow_ray(const World& world, const glm::dvec3& origin, const glm::dvec
                              !(path.hit && path.hit->distance <= face.distance);
         piece.distance = crosses ? face.distance : path.hit ? path.hit->distance : left;
         path.pieces.push_back(piece);
-        glm::dvec3 depth = world.media().depth(piece.origin, piece.direction, piece.distance);
-        if (piece.slab) depth += piece.slab->extinction * piece.distance;
-        const glm::dvec3 throughput = piece.throughput * transmittance_of(depth);
+        glm::dvec3 throughput = piece.throughput;
+        if (attenuate) {
+            glm::dvec3 depth = world.media().depth(piece.origin, piece.direction, piece.distance);
+            if (piece.slab) depth += piece.slab->extinction * piece.distance;
+            throughput *= transmittance_of(depth);
+        }
         path.throughput = throughput;
         if (!crosses) return path;
         if (!(std::max({throughput.x, throughput.y, throughput.z}) > 1e-9)) break;

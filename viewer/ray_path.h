@@ -29,8 +29,9 @@ struct RayPath {
 /// At a surface it goes on refracted, with the transmittance of Fresnel and the factor ior^-2 or
 /// ior^2 of radiance; where all is reflected, it goes on reflected. What is reflected in part is
 /// left out. It is given up after kMostPieces, as is one caught by total reflection, and where it
-/// has under 1e-9 left. Without slabs one piece.
-RayPath follow_ray(const World& world, const glm::dvec3& origin, const glm::dvec3& direction);
+/// has under 1e-9 left. Without slabs one piece. Unless `attenuate`, media dim nothing.
+RayPath follow_ray(const World& world, const glm::dvec3& origin, const glm::dvec3& direction,
+                   bool attenuate = true);
 
 inline constexpr std::size_t kMostPieces = 32;
 

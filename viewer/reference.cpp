@@ -14,6 +14,27 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
+// Whom numbers of a sample's stream are for.
+enum Purpose : unsigned { kMapOnSurfaces = 1, kMapByMedia, kLampsByMedia, kMapInMedia };
+
+Plan all_of(const World& world) {
+    PlanOptions options;
+    options.bounds = false;
+    return make_plan(world, options);
+}
+
+// A diffuse part alone where the plan leaves out the other; with it where all is evaluated.
+SurfaceMaterial planned(SurfaceMaterial material, const ObjectPlan& plan, bool everything) {
+    const auto* const phong = std::get_if<PhongMaterial>(&material.kind);
+    const auto* const lambert = std::get_if<LambertMaterial>(&material.kind);
+    if (phong && !plan.glossy) {
+        material.kind = LambertMaterial{phong->diffuse};
+    } else if (lambert && everything) {
+        material.kind = PhongMaterial{lambert->diffuse, glm::dvec3(0), 1};
+    }
+    return material;
+}
+
 struct Collision {
     double t, pdf;
 };
@@ -46,6 +67,31 @@ Collision first_collision(const std::vector<double>& marks, const Depth& depth_t
 
 }  // namespace
 
+ReferenceCounts& ReferenceCounts::operator+=(const ReferenceCounts& other) {
+    rays += other.rays;
+    line_points += other.line_points;
+    airlights += other.airlights;
+    surface_lights += other.surface_lights;
+    attenuations += other.attenuations;
+    return *this;
+}
+
+ReferenceRenderer::ReferenceRenderer(const World& world, const ReferenceOptions& options)
+    : ReferenceRenderer(world, all_of(world), options) {}
+
+ReferenceRenderer::ReferenceRenderer(const World& world, const Plan& plan,
+                                     const ReferenceOptions& options)
+    : world_(world), plan_(plan), options_(options) {
+    for (std::size_t i = 0; i < plan_.objects.size(); ++i) {
+        materials_.push_back(planned(world.material(i), plan_.objects[i], plan_.everything));
+    }
+}
+
+// Whether there is anything in the air, or the plan does not ask.
+bool ReferenceRenderer::in_media() const {
+    return plan_.everything || !world_.media().empty() || !world_.slabs().empty();
+}
+
 bool ReferenceRenderer::sees(const glm::dvec3& from, const glm::dvec3& to,
                              ReferenceCounts& counts) const {
     ++counts.rays;
@@ -62,7 +108,8 @@ glm::dvec3 ReferenceRenderer::airlight_of_map(const RayPiece& piece, SampleStrea
                                               ReferenceCounts& counts) const {
     const SceneMedia& media = world_.media();
     const EnvironmentSampler* const sampler = world_.sampler();
-    if ((media.empty() && !piece.slab) || !sampler || !std::isfinite(piece.distance)) {
+    if ((!plan_.everything && media.empty() && !piece.slab) || !sampler ||
+        !std::isfinite(piece.distance)) {
         return glm::dvec3(0);
     }
     const double xi = stream.next(), choice_x = stream.next(), choice_y = stream.next();
@@ -90,7 +137,7 @@ glm::dvec3 ReferenceRenderer::airlight_of_map(const RayPiece& piece, SampleStrea
     if (options_.shadows_in_media && !sees_map(x, light.direction, counts)) return glm::dvec3(0);
     return sent * scattered(x, -light.direction, -piece.direction) *
            transmittance_of(
-               straight_depth(x, light.direction, world_.scene().environment->distance));
+               straight_depth(x, light.direction, world_.scene().environment->distance, counts));
 }
 
 glm::dvec3 ReferenceRenderer::surface_of_map(const WorldHit& hit, const glm::dvec3& to_viewer,
@@ -98,14 +145,15 @@ glm::dvec3 ReferenceRenderer::surface_of_map(const WorldHit& hit, const glm::dve
                                              ReferenceCounts& counts) const {
     const EnvironmentSampler* const sampler = world_.sampler();
     if (!sampler) return glm::dvec3(0);
-    const SurfaceMaterial& material = world_.material(hit.object);
+    const SurfaceMaterial& material = materials_[hit.object];
     const auto arriving = [&](const glm::dvec3& direction) {
-        if (!(glm::dot(direction, hit.face) > 0) || !sees_map(from, direction, counts)) {
+        if (!(glm::dot(direction, hit.face) > 0)) return glm::dvec3(0);
+        if (plan_.runs(Effect::shadow_prt) && !sees_map(from, direction, counts)) {
             return glm::dvec3(0);
         }
         return world_.environment(direction) *
                transmittance_of(
-                   straight_depth(from, direction, world_.scene().environment->distance));
+                   straight_depth(from, direction, world_.scene().environment->distance, counts));
     };
     // Two ways to draw a direction, each weighed by the sum of both densities.
     const double x = stream.next(), y = stream.next();
@@ -128,21 +176,21 @@ glm::dvec3 ReferenceRenderer::surface_of_map(const WorldHit& hit, const glm::dve
 
 // Around a light the airlight is 1 / sin(gamma) bright, so gamma and the azimuth are drawn evenly:
 // the density is 1 / (2 pi^2 sin(gamma)).
-glm::dvec3 ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::dvec3& to_viewer,
-                                               const glm::dvec3& from, const glm::dvec3& direct,
-                                               SampleStream& stream,
-                                               ReferenceCounts& counts) const {
-    if (world_.media().empty() && world_.slabs().empty()) return glm::dvec3(0);
-    const SurfaceMaterial& material = world_.material(hit.object);
+void ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::dvec3& to_viewer,
+                                         const glm::dvec3& from, const SampleStream& stream,
+                                         ReferenceCounts& counts, LayeredRadiance& light) const {
+    if (!in_media()) return;
+    const SurfaceMaterial& material = materials_[hit.object];
     const auto path_to = [&](const glm::dvec3& direction) {
-        const RayPath path = follow_ray(world_, from, direction);
+        const RayPath path = follow_ray(world_, from, direction, attenuates());
         counts.rays += path.rays;
         return path;
     };
-    glm::dvec3 sum(0);
-    for (const PointLight& light : world_.scene().lights) {
-        const double gamma = kPi * stream.next(), azimuth = 2 * kPi * stream.next();
-        const glm::dvec3 axis = glm::normalize(light.position - from);
+    SampleStream of_lamps = stream.of(kLampsByMedia);
+    for (std::size_t lamp = 0; lamp < plan_.lights.size(); ++lamp) {
+        if (!plan_.lights[lamp].surface) continue;
+        const double gamma = kPi * of_lamps.next(), azimuth = 2 * kPi * of_lamps.next();
+        const glm::dvec3 axis = glm::normalize(world_.scene().lights[lamp].position - from);
         glm::dvec3 x, y;
         make_axes(axis, x, y);
         const glm::dvec3 direction =
@@ -150,60 +198,82 @@ glm::dvec3 ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::d
             std::cos(gamma) * axis;
         const glm::dvec3 f = reflect(material, hit.normal, to_viewer, direction);
         if (!(largest(f) > 0) || !(glm::dot(direction, hit.face) > 0)) continue;
+        ++counts.surface_lights;
         const glm::dvec3 weight = f * (2 * kPi * kPi * std::sin(gamma));
-        const double absolute = options_.quadrature * largest(sum + direct) / largest(weight);
-        sum += weight * airlight_along(light, path_to(direction), absolute, counts);
+        const double absolute = options_.quadrature * largest(light.total()) / largest(weight);
+        const LampAirlight sent = airlight_along(lamp, path_to(direction), absolute, counts);
+        light[RadianceLayer::surface_point] += weight * (sent.gaussians + sent.others);
     }
-    if (world_.sampler()) {
-        const LobeSample lobe = sample_lobe(material, hit.normal, to_viewer, stream);
-        const glm::dvec3 f = reflect(material, hit.normal, to_viewer, lobe.direction);
-        if (lobe.pdf > 0 && largest(f) > 0 && glm::dot(lobe.direction, hit.face) > 0) {
-            sum += f * map_along(path_to(lobe.direction), stream, counts) / lobe.pdf;
+    if (!world_.sampler() || !plan_.runs(Effect::surface_environment)) return;
+    SampleStream of_map = stream.of(kMapByMedia);
+    const LobeSample lobe = sample_lobe(material, hit.normal, to_viewer, of_map);
+    const glm::dvec3 f = reflect(material, hit.normal, to_viewer, lobe.direction);
+    if (lobe.pdf > 0 && largest(f) > 0 && glm::dot(lobe.direction, hit.face) > 0) {
+        ++counts.surface_lights;
+        light[RadianceLayer::surface_environment] +=
+            f * map_along(path_to(lobe.direction), of_map, counts) / lobe.pdf;
+    }
+}
+
+void ReferenceRenderer::surface(const WorldHit& hit, const glm::dvec3& to_viewer,
+                                const SampleStream& stream, ReferenceCounts& counts,
+                                LayeredRadiance& light) const {
+    const glm::dvec3 from = world_.lifted(hit);
+    const Slab* const slab = world_.slabs().at(from);
+    if (slab) {
+        surface_in_slab(*slab, hit, to_viewer, from, stream.of(kMapOnSurfaces), counts, light);
+    } else {
+        for (const PointLight& lamp : world_.scene().lights) {
+            const glm::dvec3 to_light = lamp.position - from;
+            const double r = glm::length(to_light);
+            if (!(r > 0) || !(glm::dot(to_light, hit.face) > 0)) continue;
+            const glm::dvec3 f =
+                reflect(materials_[hit.object], hit.normal, to_viewer, to_light / r);
+            if (!(largest(f) > 0) || !sees(from, lamp.position, counts)) continue;
+            light[RadianceLayer::direct] +=
+                f * lamp.intensity / (r * r) *
+                transmittance_of(straight_depth(from, to_light / r, r, counts));
+        }
+        if (plan_.runs(Effect::surface_environment)) {
+            SampleStream of_map = stream.of(kMapOnSurfaces);
+            light[RadianceLayer::surface_environment] +=
+                surface_of_map(hit, to_viewer, from, of_map, counts);
         }
     }
-    return sum;
+    surface_of_media(hit, to_viewer, from, stream, counts, light);
 }
 
-glm::dvec3 ReferenceRenderer::surface(const WorldHit& hit, const glm::dvec3& to_viewer,
-                                      SampleStream& stream, ReferenceCounts& counts) const {
-    const SurfaceMaterial& material = world_.material(hit.object);
-    const glm::dvec3 from = world_.lifted(hit);
-    if (const Slab* const slab = world_.slabs().at(from)) {
-        const glm::dvec3 direct = surface_in_slab(*slab, hit, to_viewer, from, stream, counts);
-        return direct + surface_of_media(hit, to_viewer, from, direct, stream, counts);
-    }
-    glm::dvec3 sum(0);
-    for (const PointLight& light : world_.scene().lights) {
-        const glm::dvec3 to_light = light.position - from;
-        const double r = glm::length(to_light);
-        if (!(r > 0) || !(glm::dot(to_light, hit.face) > 0)) continue;
-        const glm::dvec3 f = reflect(material, hit.normal, to_viewer, to_light / r);
-        if (!(largest(f) > 0) || !sees(from, light.position, counts)) continue;
-        sum +=
-            f * light.intensity / (r * r) * transmittance_of(straight_depth(from, to_light / r, r));
-    }
-    sum += surface_of_map(hit, to_viewer, from, stream, counts);
-    return sum + surface_of_media(hit, to_viewer, from, sum, stream, counts);
-}
-
-glm::dvec3 ReferenceRenderer::radiance(const glm::dvec3& origin, const glm::dvec3& direction,
-                                       SampleStream& stream, ReferenceCounts& counts) const {
-    const RayPath path = follow_ray(world_, origin, direction);
+LayeredRadiance ReferenceRenderer::layers(const glm::dvec3& origin, const glm::dvec3& direction,
+                                          SampleStream& stream, ReferenceCounts& counts) const {
+    const RayPath path = follow_ray(world_, origin, direction, attenuates());
     counts.rays += path.rays;
-    glm::dvec3 sum = map_along(path, stream, counts);
+    if (attenuates()) counts.attenuations += path.pieces.size();
+    LayeredRadiance light;
     if (largest(path.throughput) > 0) {
         const glm::dvec3& last = path.pieces.back().direction;
-        sum += path.throughput *
-               (path.hit ? surface(*path.hit, -last, stream, counts) : world_.environment(last));
+        if (path.hit) {
+            surface(*path.hit, -last, stream, counts, light);
+            for (glm::dvec3& layer : light.layers) layer *= path.throughput;
+        } else {
+            light[RadianceLayer::direct] = path.throughput * world_.environment(last);
+        }
     }
-    for (const PointLight& light : world_.scene().lights) {
-        sum += airlight_along(light, path, options_.quadrature * largest(sum), counts);
+    if (plan_.runs(Effect::airlight_environment)) {
+        SampleStream of_map = stream.of(kMapInMedia);
+        light[RadianceLayer::airlight_environment] = map_along(path, of_map, counts);
     }
-    if (!world_.particle_irradiance()) return sum;
-    for (const RayPiece& piece : path.pieces) {
-        sum += piece.throughput * particles_along(piece, counts);
+    for (std::size_t lamp = 0; lamp < plan_.lights.size(); ++lamp) {
+        const LampAirlight sent =
+            airlight_along(lamp, path, options_.quadrature * largest(light.total()), counts);
+        light[RadianceLayer::airlight_point] += sent.others;
+        light[RadianceLayer::airlight_gaussians] += sent.gaussians;
     }
-    return sum;
+    if (plan_.runs(Effect::particles)) {
+        for (const RayPiece& piece : path.pieces) {
+            light[RadianceLayer::particles] += piece.throughput * particles_along(piece, counts);
+        }
+    }
+    return light;
 }
 
 }  // namespace airlight

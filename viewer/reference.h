@@ -41,6 +41,7 @@
 #include <vector>
 
 #include "core/method_names.h"
+#include "viewer/plan.h"
 #include "viewer/ray_path.h"
 #include "viewer/ray_shadows.h"
 #include "viewer/sample_stream.h"
@@ -75,17 +76,36 @@ struct ReferenceOptions {
 struct ReferenceCounts {
     std::uint64_t rays = 0;         ///< traced, shadow rays among them
     std::uint64_t line_points = 0;  ///< points of media whose light was summed
+    std::uint64_t airlights = 0;    ///< rays of view and lamps or map, in the media
+    std::uint64_t surface_lights =
+        0;                           ///< points of surfaces that light of the media was sought for
+    std::uint64_t attenuations = 0;  ///< ways whose optical depth was taken
+
+    ReferenceCounts& operator+=(const ReferenceCounts& other);
+    /// All that only media cause.
+    std::uint64_t in_media() const {
+        return line_points + airlights + surface_lights + attenuations;
+    }
 };
 
 class ReferenceRenderer {
   public:
-    ReferenceRenderer(const World& world, const ReferenceOptions& options)
-        : world_(world), options_(options) {}
+    /// Everything that the scene holds.
+    ReferenceRenderer(const World& world, const ReferenceOptions& options);
+    /// What the plan calls for. The options' quadrature and shadows hold beside it; the world's
+    /// media should be those of the plan (World::set_media).
+    ReferenceRenderer(const World& world, const Plan& plan, const ReferenceOptions& options);
 
     /// Radiance that comes to `origin` from a unit direction; one sample of what is sampled, whose
     /// mean it is. Not negative, and finite unless the ray runs through a light.
     glm::dvec3 radiance(const glm::dvec3& origin, const glm::dvec3& direction, SampleStream& stream,
-                        ReferenceCounts& counts) const;
+                        ReferenceCounts& counts) const {
+        return layers(origin, direction, stream, counts).total();
+    }
+    /// The same by what brought it. Numbers of the stream belong to one layer each: a layer that is
+    /// left out does not change the others.
+    LayeredRadiance layers(const glm::dvec3& origin, const glm::dvec3& direction,
+                           SampleStream& stream, ReferenceCounts& counts) const;
 
     /// Light of the point lights that media scatter towards `origin` along a ray: nothing of it is
     /// sampled. `distance` in [0, inf]. Within the larger of `absolute` and the relative error.
@@ -100,7 +120,8 @@ class ReferenceRenderer {
                                   double distance, ReferenceCounts& counts) const;
 
   private:
-    glm::dvec3 airlight_of(const PointLight& light, const glm::dvec3& origin,
+    enum class Scatterers { gaussians, others };
+    glm::dvec3 airlight_of(std::size_t lamp, Scatterers which, const glm::dvec3& origin,
                            const glm::dvec3& direction, double distance, double absolute,
                            ReferenceCounts& counts) const;
     glm::dvec3 airlight_of_uniform(const PointLight& light, double foot, double height,
@@ -110,11 +131,15 @@ class ReferenceRenderer {
     glm::dvec3 airlight_of_map(const RayPiece& piece, SampleStream& stream,
                                ReferenceCounts& counts) const;
     glm::dvec3 map_along(const RayPath& path, SampleStream& stream, ReferenceCounts& counts) const;
-    glm::dvec3 airlight_along(const PointLight& light, const RayPath& path, double absolute,
-                              ReferenceCounts& counts) const;
+    struct LampAirlight {
+        glm::dvec3 gaussians{0}, others{0};
+    };
+    LampAirlight airlight_along(std::size_t lamp, const RayPath& path, double absolute,
+                                ReferenceCounts& counts) const;
+    bool in_media() const;
     glm::dvec3 particles_along(const RayPiece& piece, ReferenceCounts& counts) const;
-    glm::dvec3 straight_depth(const glm::dvec3& x, const glm::dvec3& direction,
-                              double distance) const;
+    glm::dvec3 straight_depth(const glm::dvec3& x, const glm::dvec3& direction, double distance,
+                              ReferenceCounts& counts) const;
 
     glm::dvec3 airlight_in_slab(const PointLight& light, const RayPiece& piece, double absolute,
                                 ReferenceCounts& counts) const;
@@ -126,24 +151,27 @@ class ReferenceRenderer {
                                   ReferenceCounts& counts) const;
     glm::dvec3 map_in_slab(const Slab& slab, const glm::dvec3& x, const SlabArrival& way,
                            const glm::dvec3& to_map, bool shadows, ReferenceCounts& counts) const;
-    glm::dvec3 surface_in_slab(const Slab& slab, const WorldHit& hit, const glm::dvec3& to_viewer,
-                               const glm::dvec3& from, SampleStream& stream,
-                               ReferenceCounts& counts) const;
+    void surface_in_slab(const Slab& slab, const WorldHit& hit, const glm::dvec3& to_viewer,
+                         const glm::dvec3& from, SampleStream stream, ReferenceCounts& counts,
+                         LayeredRadiance& light) const;
 
-    glm::dvec3 surface(const WorldHit& hit, const glm::dvec3& to_viewer, SampleStream& stream,
-                       ReferenceCounts& counts) const;
+    void surface(const WorldHit& hit, const glm::dvec3& to_viewer, const SampleStream& stream,
+                 ReferenceCounts& counts, LayeredRadiance& light) const;
     glm::dvec3 surface_of_map(const WorldHit& hit, const glm::dvec3& to_viewer,
                               const glm::dvec3& from, SampleStream& stream,
                               ReferenceCounts& counts) const;
-    glm::dvec3 surface_of_media(const WorldHit& hit, const glm::dvec3& to_viewer,
-                                const glm::dvec3& from, const glm::dvec3& direct,
-                                SampleStream& stream, ReferenceCounts& counts) const;
+    void surface_of_media(const WorldHit& hit, const glm::dvec3& to_viewer, const glm::dvec3& from,
+                          const SampleStream& stream, ReferenceCounts& counts,
+                          LayeredRadiance& light) const;
     bool sees(const glm::dvec3& from, const glm::dvec3& to, ReferenceCounts& counts) const;
     bool sees_map(const glm::dvec3& from, const glm::dvec3& direction,
                   ReferenceCounts& counts) const;
+    bool attenuates() const { return plan_.runs(Effect::attenuation); }
 
     const World& world_;
+    Plan plan_;
     ReferenceOptions options_;
+    std::vector<SurfaceMaterial> materials_;  ///< of the objects, as the plan has them
 };
 
 }  // namespace airlight

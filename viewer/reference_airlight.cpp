@@ -48,23 +48,27 @@ glm::dvec3 ReferenceRenderer::airlight_of_uniform(const PointLight& light, doubl
 
 // With s = t - foot the distance along the ray from its point next to the light, at the height h
 // above it, and s = h tan u: dt / (s^2 + h^2) = du / h.
-glm::dvec3 ReferenceRenderer::airlight_of(const PointLight& light, const glm::dvec3& origin,
-                                          const glm::dvec3& direction, double distance,
-                                          double absolute, ReferenceCounts& counts) const {
+glm::dvec3 ReferenceRenderer::airlight_of(std::size_t lamp, Scatterers which,
+                                          const glm::dvec3& origin, const glm::dvec3& direction,
+                                          double distance, double absolute,
+                                          ReferenceCounts& counts) const {
+    const PointLight& light = world_.scene().lights[lamp];
     const SceneMedia& media = world_.media();
     const double intensity = largest(light.intensity);
     if (!(intensity > 0 && distance > 0)) return glm::dvec3(0);
+    ++counts.airlights;
     const bool by_parts = options_.airlight == RayAirlight::parts;
     const double foot = glm::dot(light.position - origin, direction);
     const glm::dvec3 across = light.position - origin - foot * direction;
     // A ray through the light diverges there; the rounding of coordinates keeps it off.
     const double height = std::max(glm::length(across), 1e-9 * (1 + std::abs(foot)));
     std::vector<RayInterval> lit = {{0, distance}};
-    if (by_parts && options_.shadows_in_media && world_.shadows()) {
+    const bool shaded = options_.shadows_in_media && plan_.lights[lamp].shafts;
+    if (by_parts && shaded && world_.shadows()) {
         lit = world_.shadows()->lit(light.position, origin, direction, distance);
     }
     const SceneSlabs& slabs = world_.slabs();
-    if (by_parts && media.everywhere() && slabs.empty())
+    if (by_parts && !plan_.everything && media.everywhere() && slabs.empty())
         return airlight_of_uniform(light, foot, height, lit);
 
     LineQuadratureOptions quadrature;
@@ -94,13 +98,19 @@ glm::dvec3 ReferenceRenderer::airlight_of(const PointLight& light, const glm::dv
         const glm::dvec3 to_light = light.position - x;
         const double r = glm::length(to_light);
         if (!(r > 0)) return glm::dvec3(0);
-        const glm::dvec3 sent = scattered(x, -to_light / r, -direction);
+        const double cosine = std::clamp(glm::dot(to_light / r, direction), -1.0, 1.0);
+        glm::dvec3 sent(0);
+        for (const MediumPart& part : media.parts()) {
+            if (part.is_gaussian() != (which == Scatterers::gaussians)) continue;
+            sent += part.albedo() * part.density(x) * part.phase().at_cosine(cosine);
+        }
         if (!(largest(sent) > 0)) return glm::dvec3(0);
-        if (!by_parts && options_.shadows_in_media && !sees(x, light.position, counts)) {
+        if (!by_parts && shaded && !sees(x, light.position, counts)) {
             return glm::dvec3(0);
         }
+        if (!attenuates()) return sent;
         return sent * transmittance_of(media.depth(origin, direction, t) +
-                                       straight_depth(x, to_light / r, r));
+                                       straight_depth(x, to_light / r, r, counts));
     };
     return light.intensity / height * integrate_panels(integrand, panels, quadrature).value;
 }
@@ -110,9 +120,12 @@ glm::dvec3 ReferenceRenderer::airlight_of_lights(const glm::dvec3& origin,
                                                  ReferenceCounts& counts, double absolute) const {
     glm::dvec3 sum(0);
     if (world_.media().empty()) return sum;
-    for (const PointLight& light : world_.scene().lights) {
-        sum += airlight_of(light, origin, direction, distance,
-                           std::max(absolute, options_.quadrature * largest(sum)), counts);
+    RayPath path;
+    path.pieces.push_back({origin, direction, distance, nullptr, glm::dvec3(1)});
+    for (std::size_t lamp = 0; lamp < world_.scene().lights.size(); ++lamp) {
+        const LampAirlight light = airlight_along(
+            lamp, path, std::max(absolute, options_.quadrature * largest(sum)), counts);
+        sum += light.gaussians + light.others;
     }
     return sum;
 }

@@ -49,6 +49,14 @@ void check(const ReferencePictureOptions& options) {
 
 ReferencePicture render_reference(const World& world, const ReferencePictureOptions& options,
                                   std::size_t max_memory, Progress* progress) {
+    PlanOptions holds;
+    holds.bounds = false;
+    return render_reference(world, make_plan(world, holds), options, max_memory, progress);
+}
+
+ReferencePicture render_reference(const World& world, const Plan& plan,
+                                  const ReferencePictureOptions& options, std::size_t max_memory,
+                                  Progress* progress) {
     check(options);
     const Camera& camera = world.scene().camera;
     const int width = options.width > 0 ? options.width : camera.width;
@@ -58,7 +66,7 @@ ReferencePicture render_reference(const World& world, const ReferencePictureOpti
     require_memory(checked_multiply(pixels, sizeof(PixelSum) + 12, "the picture"), max_memory,
                    "the picture", world.scene().path);
     const glm::dmat3 axes = camera_axes(camera);
-    const ReferenceRenderer renderer(world, options.reference);
+    const ReferenceRenderer renderer(world, plan, options.reference);
     std::vector<PixelSum> sums(pixels);
     ReferencePicture result;
 
@@ -84,12 +92,9 @@ ReferencePicture render_reference(const World& world, const ReferencePictureOpti
             return counts;
         };
         const ReferenceCounts counts = ordered_reduce<ReferenceCounts>(
-            pixels, kBlock, {}, of_block, [](ReferenceCounts& all, const ReferenceCounts& part) {
-                all.rays += part.rays;
-                all.line_points += part.line_points;
-            });
-        result.counts.rays += counts.rays;
-        result.counts.line_points += counts.line_points;
+            pixels, kBlock, {}, of_block,
+            [](ReferenceCounts& all, const ReferenceCounts& part) { all += part; });
+        result.counts += counts;
     };
     const auto brightest = [&] {
         double most = 0;

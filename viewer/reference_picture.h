@@ -35,6 +35,11 @@ struct ReferencePicture {
 /// Pixels are means over their area, of samples that are the same for every number of threads.
 /// Counts pixels at `progress`, twice where there is a tolerance. Throws Error(usage) for options
 /// outside their domain, Error(memory) beyond max_memory.
+ReferencePicture render_reference(const World& world, const Plan& plan,
+                                  const ReferencePictureOptions& options,
+                                  std::size_t max_memory = kDefaultMaxMemory,
+                                  Progress* progress = nullptr);
+/// With all that the scene holds.
 ReferencePicture render_reference(const World& world, const ReferencePictureOptions& options,
                                   std::size_t max_memory = kDefaultMaxMemory,
                                   Progress* progress = nullptr);

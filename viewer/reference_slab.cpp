@@ -17,7 +17,9 @@ glm::dvec3 ReferenceRenderer::slab_depth(const Slab& slab, const glm::dvec3& x,
 
 // Of a straight line outside slabs, or through them as if their surfaces were not there.
 glm::dvec3 ReferenceRenderer::straight_depth(const glm::dvec3& x, const glm::dvec3& direction,
-                                             double distance) const {
+                                             double distance, ReferenceCounts& counts) const {
+    if (!attenuates()) return glm::dvec3(0);
+    ++counts.attenuations;
     return world_.media().depth(x, direction, distance) +
            world_.slabs().depth(x, direction, distance);
 }
@@ -38,7 +40,7 @@ glm::dvec3 ReferenceRenderer::irradiance_in_slab(const Slab& slab, const glm::dv
     glm::dvec3 depth = slab_depth(slab, x, way);
     if (distance > 0) {
         if (shadows && !sees(way.entry, light.position, counts)) return glm::dvec3(0);
-        depth += straight_depth(way.entry, outside / distance, distance);
+        depth += straight_depth(way.entry, outside / distance, distance, counts);
     }
     return light.intensity * way.irradiance * transmittance_of(depth);
 }
@@ -82,18 +84,38 @@ glm::dvec3 ReferenceRenderer::airlight_in_slab(const PointLight& light, const Ra
     return integrate_line(integrand, breaks, quadrature).value;
 }
 
-glm::dvec3 ReferenceRenderer::airlight_along(const PointLight& light, const RayPath& path,
-                                             double absolute, ReferenceCounts& counts) const {
-    glm::dvec3 sum(0);
+ReferenceRenderer::LampAirlight ReferenceRenderer::airlight_along(std::size_t lamp,
+                                                                  const RayPath& path,
+                                                                  double absolute,
+                                                                  ReferenceCounts& counts) const {
+    const LampPlan& plan = plan_.lights[lamp];
+    const bool gaussians =
+        plan.airlight_gaussians && (plan_.everything || world_.media().any(true));
+    const bool others = plan.airlight_point && (plan_.everything || world_.media().any(false));
+    LampAirlight sum;
     for (const RayPiece& piece : path.pieces) {
         const double most = largest(piece.throughput);
         if (!(most > 0)) continue;
-        const double enough = std::max(absolute, options_.quadrature * largest(sum)) / most;
+        const auto enough = [&] {
+            const double so_far = largest(sum.gaussians + sum.others);
+            return std::max(absolute, options_.quadrature * so_far) / most;
+        };
         if (piece.slab) {
-            sum += piece.throughput * airlight_in_slab(light, piece, enough, counts);
-        } else if (!world_.media().empty()) {
-            sum += piece.throughput * airlight_of(light, piece.origin, piece.direction,
-                                                  piece.distance, enough, counts);
+            if (plan.airlight_point) {
+                sum.others += piece.throughput * airlight_in_slab(world_.scene().lights[lamp],
+                                                                  piece, enough(), counts);
+            }
+            continue;
+        }
+        if (others) {
+            sum.others +=
+                piece.throughput * airlight_of(lamp, Scatterers::others, piece.origin,
+                                               piece.direction, piece.distance, enough(), counts);
+        }
+        if (gaussians) {
+            sum.gaussians +=
+                piece.throughput * airlight_of(lamp, Scatterers::gaussians, piece.origin,
+                                               piece.direction, piece.distance, enough(), counts);
         }
     }
     return sum;
@@ -115,41 +137,41 @@ glm::dvec3 ReferenceRenderer::map_in_slab(const Slab& slab, const glm::dvec3& x,
         return glm::dvec3(0);
     }
     const double distance = world_.scene().environment->distance;
-    return way.irradiance * transmittance_of(slab_depth(slab, x, way) +
-                                             straight_depth(way.entry, to_map,
-                                                            std::max(0.0, distance - way.inside)));
+    return way.irradiance *
+           transmittance_of(
+               slab_depth(slab, x, way) +
+               straight_depth(way.entry, to_map, std::max(0.0, distance - way.inside), counts));
 }
 
 // With what of a lamp and of the map arrives at a surface.
-glm::dvec3 ReferenceRenderer::surface_in_slab(const Slab& slab, const WorldHit& hit,
-                                              const glm::dvec3& to_viewer, const glm::dvec3& from,
-                                              SampleStream& stream, ReferenceCounts& counts) const {
-    const SurfaceMaterial& material = world_.material(hit.object);
+void ReferenceRenderer::surface_in_slab(const Slab& slab, const WorldHit& hit,
+                                        const glm::dvec3& to_viewer, const glm::dvec3& from,
+                                        SampleStream stream, ReferenceCounts& counts,
+                                        LayeredRadiance& light) const {
+    const SurfaceMaterial& material = materials_[hit.object];
     const auto reflected = [&](const SlabArrival& way) {
         if (!(glm::dot(way.to_light, hit.face) > 0)) return glm::dvec3(0);
         return reflect(material, hit.normal, to_viewer, way.to_light);
     };
-    glm::dvec3 sum(0);
-    for (const PointLight& light : world_.scene().lights) {
-        for (const SlabArrival& way : arrivals_of_point(slab, from, light.position)) {
+    for (const PointLight& lamp : world_.scene().lights) {
+        for (const SlabArrival& way : arrivals_of_point(slab, from, lamp.position)) {
             const glm::dvec3 f = reflected(way);
-            if (largest(f) > 0) {
-                sum += f * irradiance_in_slab(slab, from, way, light, true, counts);
-            }
+            if (!(largest(f) > 0)) continue;
+            light[RadianceLayer::direct] +=
+                f * irradiance_in_slab(slab, from, way, lamp, true, counts);
         }
     }
     const EnvironmentSampler* const sampler = world_.sampler();
-    if (!sampler) return sum;
+    if (!sampler || !plan_.runs(Effect::surface_environment)) return;
     const double u = stream.next(), v = stream.next();
-    const EnvironmentSample light = sampler->sample(u, v);
-    if (!(light.pdf > 0)) return sum;
-    for (const SlabArrival& way : arrivals_of_direction(slab, from, light.direction)) {
+    const EnvironmentSample sky = sampler->sample(u, v);
+    if (!(sky.pdf > 0)) return;
+    for (const SlabArrival& way : arrivals_of_direction(slab, from, sky.direction)) {
         const glm::dvec3 f = reflected(way);
         if (!(largest(f) > 0)) continue;
-        sum += f * light.radiance / light.pdf *
-               map_in_slab(slab, from, way, light.direction, true, counts);
+        light[RadianceLayer::surface_environment] +=
+            f * sky.radiance / sky.pdf * map_in_slab(slab, from, way, sky.direction, true, counts);
     }
-    return sum;
 }
 
 }  // namespace airlight

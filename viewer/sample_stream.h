@@ -14,6 +14,14 @@ class SampleStream {
   public:
     SampleStream(std::uint64_t pixel, std::uint64_t index) : pixel_(pixel), index_(index) {}
 
+    /// The numbers after those already drawn, but for one purpose alone: what others draw or leave
+    /// out does not change them.
+    SampleStream of(unsigned purpose) const {
+        SampleStream stream(mix(pixel_, ~std::uint64_t(purpose)), index_);
+        stream.dimension_ = dimension_;
+        return stream;
+    }
+
     double next() {
         static constexpr double kSteps[kEven] = {
             0.41421356237309515, 0.73205080756887719, 0.23606797749978981, 0.64575131106459072,

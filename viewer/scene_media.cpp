@@ -93,6 +93,7 @@ std::optional<RaySpan> clip_to_box(const SceneBox& box, const glm::dvec3& origin
 MediumPart::MediumPart(const SceneMedium& medium)
     : phase_(phase_of(medium.phase)), bounds_(medium.bounds) {
     std::visit(PartBuilder{shapes_, tree_, colour_, albedo_}, medium.kind);
+    gaussian_ = std::holds_alternative<SceneGaussians>(medium.kind);
     if (!bounds_ && std::holds_alternative<SceneUniform>(medium.kind)) everywhere_ = colour_;
 }
 
@@ -190,6 +191,11 @@ SceneMedia::SceneMedia(const std::vector<SceneMedium>& media) {
         }
         *everywhere_ += *part.everywhere();
     }
+}
+
+bool SceneMedia::any(bool gaussian) const {
+    return std::any_of(parts_.begin(), parts_.end(),
+                       [&](const MediumPart& part) { return part.is_gaussian() == gaussian; });
 }
 
 glm::dvec3 SceneMedia::density(const glm::dvec3& x) const {

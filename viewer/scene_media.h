@@ -35,6 +35,7 @@ class MediumPart {
     const glm::dvec3& albedo() const { return albedo_; }
     const PhaseFunction& phase() const { return phase_; }
     const std::optional<SceneBox>& bounds() const { return bounds_; }
+    bool is_gaussian() const { return gaussian_; }
 
     /// Extinction [1/m] at a point; 0 outside the bounds.
     glm::dvec3 density(const glm::dvec3& x) const;
@@ -67,6 +68,7 @@ class MediumPart {
     PhaseFunction phase_;
     std::optional<SceneBox> bounds_;
     std::optional<glm::dvec3> everywhere_;
+    bool gaussian_ = false;
 };
 
 /// All media but slabs; what they do adds up.
@@ -77,6 +79,8 @@ class SceneMedia {
 
     bool empty() const { return parts_.empty(); }
     const std::vector<MediumPart>& parts() const { return parts_; }
+    /// Whether a part is made of Gaussians, or is not.
+    bool any(bool gaussian) const;
     /// The extinction of all where each is the same everywhere.
     const std::optional<glm::dvec3>& everywhere() const { return everywhere_; }
 

@@ -2,9 +2,11 @@
 #include "viewer/world.h"
 
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <string>
@@ -19,6 +21,8 @@
 
 namespace airlight {
 namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 Mesh placed(Mesh mesh, const glm::dmat4& transform) {
     const glm::dmat3 linear(transform);
@@ -70,6 +74,12 @@ World::World(const Scene& scene, const WorldOptions& options)
     read.max_memory = options.max_memory;
     for (const SceneObject& object : scene.objects) {
         meshes_.push_back(placed(read_mesh(object.mesh.path, read), object.transform));
+        SceneBox box{glm::dvec3(kInfinite), glm::dvec3(-kInfinite)};
+        for (const glm::dvec3& p : meshes_.back().positions) {
+            box.min = glm::min(box.min, p);
+            box.max = glm::max(box.max, p);
+        }
+        boxes_.push_back(box);
     }
     materials_ = read_materials(scene.objects, options.max_memory);
     if (!meshes_.empty()) {

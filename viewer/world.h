@@ -50,6 +50,10 @@ class World {
     const SceneSlabs& slabs() const { return slabs_; }
     const SurfaceMaterial& material(std::size_t object) const { return materials_[object]; }
     std::size_t triangles() const;
+    /// Around an object.
+    const SceneBox& box(std::size_t object) const { return boxes_[object]; }
+    /// Replaces the media but for slabs, by what a plan leaves of them.
+    void set_media(const std::vector<SceneMedium>& media) { media_ = SceneMedia(media); }
 
     /// The nearest object within `distance` along a unit direction.
     std::optional<WorldHit> trace(const glm::dvec3& origin, const glm::dvec3& direction,
@@ -74,6 +78,7 @@ class World {
     SceneMedia media_;
     SceneSlabs slabs_;
     std::vector<Mesh> meshes_;  ///< in world coordinates
+    std::vector<SceneBox> boxes_;
     std::vector<SurfaceMaterial> materials_;
     std::unique_ptr<RayScene> rays_;
     struct WhenAsked;
