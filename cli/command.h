@@ -51,6 +51,7 @@ Command declare_export(CLI::App& program);
 Command declare_brdf(CLI::App& program);
 Command declare_bake(CLI::App& program);
 Command declare_merge(CLI::App& program);
+Command declare_plan(CLI::App& program);
 Command declare_render(CLI::App& program);
 
 /// Writes to standard output. Throws Error(io) when it is closed, full or a broken pipe.

@@ -106,7 +106,7 @@ int run(int argc, char** argv) {
         declare_fog(program),    declare_info(program),   declare_eval(program),
         declare_sheet(program),  declare_ladder(program), declare_sh(program),
         declare_export(program), declare_brdf(program),   declare_bake(program),
-        declare_merge(program),  declare_render(program)};
+        declare_merge(program),  declare_plan(program),   declare_render(program)};
     const Command* command = nullptr;
     try {
         command = parse(program, commands, argc, argv);

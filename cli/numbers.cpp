@@ -97,16 +97,17 @@ std::size_t parse_size(const std::string& text, const std::string& flag) {
 }
 
 int parse_choice(const std::string& text, const std::string& flag,
-                 std::initializer_list<const char*> choices) {
-    int index = 0;
-    for (const char* choice : choices) {
-        if (text == choice) return index;
-        ++index;
+                 const std::vector<std::string>& choices) {
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+        if (text == choices[i]) return static_cast<int>(i);
     }
     throw Error(ErrorCode::usage,
-                fmt::format("'{}' is unknown; it can be {}", text,
-                            list_choices({choices.begin(), choices.end()})),
-                flag);
+                fmt::format("'{}' is unknown; it can be {}", text, list_choices(choices)), flag);
+}
+
+int parse_choice(const std::string& text, const std::string& flag,
+                 std::initializer_list<const char*> choices) {
+    return parse_choice(text, flag, std::vector<std::string>(choices.begin(), choices.end()));
 }
 
 std::string list_choices(const std::vector<std::string>& choices) {

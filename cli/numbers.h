@@ -36,6 +36,8 @@ std::size_t parse_size(const std::string& text, const std::string& flag);
 
 /// The index of `text` among the choices.
 int parse_choice(const std::string& text, const std::string& flag,
+                 const std::vector<std::string>& choices);
+int parse_choice(const std::string& text, const std::string& flag,
                  std::initializer_list<const char*> choices);
 
 /// "a, b or c".

@@ -10,6 +10,7 @@
 
 #include "cli/command.h"
 #include "cli/numbers.h"
+#include "cli/plan_flags.h"
 #include "cli/stopwatch.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -27,6 +28,7 @@ struct RenderRequest {
     std::vector<std::string> inputs;
     std::string output;
     ReferencePictureOptions options;
+    PlanOptions plan;
     double exposure = 0;
 };
 
@@ -34,15 +36,6 @@ bool is_png(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return extension == ".png";
-}
-
-void parse_size_flag(const std::string& text, ReferencePictureOptions& options) {
-    const std::size_t cross = text.find('x');
-    if (cross == std::string::npos) {
-        throw Error(ErrorCode::usage, "'" + text + "' is no size such as 800x600", "--size");
-    }
-    options.width = parse_integer(text.substr(0, cross), "--size", 1, kLargestPicture);
-    options.height = parse_integer(text.substr(cross + 1), "--size", 1, kLargestPicture);
 }
 
 void check(const RenderRequest& request, const CommonOptions& common) {
@@ -81,15 +74,20 @@ void run_render(const RenderRequest& request, const CommonOptions& common) {
     const Scene scene = read_scene(input, common.max_memory);
     WorldOptions reading;
     reading.max_memory = common.max_memory;
-    const World world(scene, reading);
+    World world(scene, reading);
     const double read_seconds = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
     const int width = request.options.width > 0 ? request.options.width : scene.camera.width;
     const int height = request.options.height > 0 ? request.options.height : scene.camera.height;
     ReferencePictureOptions options = request.options;
-    options.reference.quadrature =
-        0.1 * (options.tolerance > 0 ? options.tolerance : scene.tolerance);
+    PlanOptions planning = request.plan;
+    planning.tolerance = options.tolerance;
+    planning.width = width;
+    planning.height = height;
+    const Plan plan = make_plan(world, planning);
+    world.set_media(plan.media);
+    options.reference.quadrature = plan.quadrature;
     ReferencePicture picture;
     {
         ProgressOptions drawing;
@@ -97,7 +95,7 @@ void run_render(const RenderRequest& request, const CommonOptions& common) {
         const bool twice = request.options.tolerance > 0 && request.options.samples > kFirstSamples;
         Progress progress("render", (twice ? 2 : 1) * std::uint64_t(width) * std::uint64_t(height),
                           drawing);
-        picture = render_reference(world, options, common.max_memory, &progress);
+        picture = render_reference(world, plan, options, common.max_memory, &progress);
     }
     const double render_seconds = seconds_since(start);
     if (picture.unfinished > 0) {
@@ -128,6 +126,7 @@ void run_render(const RenderRequest& request, const CommonOptions& common) {
                                  {"triangles", world.triangles()},
                                  {"rays", picture.counts.rays},
                                  {"line_points", picture.counts.line_points},
+                                 {"plan", to_json(plan)},
                                  {"seconds", {{"read", read_seconds}, {"render", render_seconds}}},
                                  {"peak_memory_bytes", peak_memory()}});
 }
@@ -146,10 +145,11 @@ Command declare_render(CLI::App& program) {
         ->option_text(" ");
     add_flag(command, "-o,--output", "OUT", "The picture",
              [=](const std::string& text) { request->output = text; });
-    add_flag(command, "--engine", "reference", "How (default: reference, the only one so far)",
-             [](const std::string& text) { parse_choice(text, "--engine", {"reference"}); });
+    add_plan_flags(command, request->plan);
     add_flag(command, "--size", "WxH", "Pixels (default: the camera's)",
-             [=](const std::string& text) { parse_size_flag(text, request->options); });
+             [=](const std::string& text) {
+                 parse_picture_size(text, request->options.width, request->options.height);
+             });
     add_flag(command, "--samples", "N", "Samples of a pixel, at most (default: 16)",
              [=](const std::string& text) {
                  request->options.samples = parse_integer(text, "--samples", 1, kLargestSamples);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "viewer/plan_cost.h"
 #include "viewer/plan_level.h"
 #include "viewer/view_bounds.h"
 
@@ -93,6 +94,7 @@ class Planner {
         }
         obey_the_user();
         name_methods();
+        if (options_.bounds) estimate_costs(world_, plan_);
         return std::move(plan_);
     }
 
@@ -217,21 +219,22 @@ class Planner {
         if (scene_.shafts) return;  // their particles have no bound
         std::vector<Item> items;
         std::vector<bool> gone(plan_.media.size(), false);
+        const bool alone = plan_.media.size() == 1;
         std::vector<std::vector<bool>> gone_blobs(plan_.media.size());
         for (std::size_t m = 0; m < plan_.media.size(); ++m) {
             const SceneMedium& medium = plan_.media[m];
             if (is_slab(medium)) continue;
             const auto* gaussians = std::get_if<SceneGaussians>(&medium.kind);
             if (!gaussians) {
-                items.push_back(
-                    {bounds.of_medium(medium).total(plan_.level), [&gone, m] { gone[m] = true; }});
+                items.push_back({bounds.of_medium(medium).total(plan_.level, alone),
+                                 [&gone, m] { gone[m] = true; }});
                 continue;
             }
             gone_blobs[m].assign(gaussians->blobs.size(), false);
             if (gaussians->blobs.size() * (1 + scene_.lights.size()) > kMostBlobBounds) continue;
             for (std::size_t k = 0; k < gaussians->blobs.size(); ++k) {
                 items.push_back({bounds.of_blob(*gaussians, medium.phase, gaussians->blobs[k])
-                                     .total(plan_.level),
+                                     .total(plan_.level, false),
                                  [&gone_blobs, m, k] { gone_blobs[m][k] = true; }});
             }
         }
@@ -309,8 +312,9 @@ class Planner {
         }
         attenuation_ = true;
         may_go(attenuation_, Effect::attenuation,
-               std::expm1(gaussians.view_depth + gaussians.lamp_depth + others.view_depth +
-                          others.lamp_depth));
+               std::expm1(std::max(gaussians.view_depth + gaussians.lamp_depth + others.view_depth +
+                                       others.lamp_depth,
+                                   gaussians.air_depth + others.air_depth)));
         environment_ = plan_.runs(Effect::airlight_environment);
         may_go(environment_, Effect::airlight_environment,
                gaussians.airlight_environment + others.airlight_environment > 0
@@ -398,14 +402,18 @@ class Planner {
             case Effect::airlight_point:
             case Effect::airlight_gaussians:
                 c.rung = closed ? "closed form" : adaptive;
-                if (!closed) {
+                if (closed) {
+                    c.bound += kClosedFormError;
+                } else {
                     c.bound += plan_.quadrature * double(plan_.lights.size());
                     c.bound_kind = BoundKind::estimated;
                 }
                 break;
             case Effect::surface_point:
                 c.rung = closed ? "closed form, sampled" : adaptive + ", sampled";
-                if (!closed) {
+                if (closed) {
+                    c.bound += kClosedFormError;
+                } else {
                     c.bound += plan_.quadrature * double(plan_.lights.size());
                     c.bound_kind = BoundKind::estimated;
                 }
@@ -441,6 +449,7 @@ class Planner {
 
     static constexpr std::size_t kMostBlobBounds = 4'000'000;
     static constexpr double kFinest = 1e-6;
+    static constexpr double kClosedFormError = 1e-12;  // ten times that of medium/airlight.h
 
     const World& world_;
     const PlanOptions& options_;

@@ -57,6 +57,9 @@ struct Plan {
     /// Radiance of the brightest pixel, as a sketch of the scene shows it; 0 where none was needed.
     double level = 0;
     bool everything = false;  ///< made with PlanOptions::all
+    /// Expected nanoseconds of CPU time for a ray of view, effects apart: surfaces and lamps on
+    /// them.
+    double base_cost = 0;
     std::array<EffectChoice, kEffectCount> effects;
     std::vector<LampPlan> lights;     ///< one for each of the scene
     std::vector<ObjectPlan> objects;  ///< likewise

@@ -149,16 +149,17 @@ double ViewCone::distance_to_hull(const glm::dvec3& point,
     return std::max(0.0, glm::dot(normal, to) - highest);
 }
 
-double MediumBounds::total(double level) const {
+double MediumBounds::total(double level, bool alone) const {
     double light = airlight_environment + surface_environment;
     for (const double lamp : airlight) light += lamp;
     for (const double lamp : surface) light += lamp;
-    return std::expm1(view_depth + lamp_depth) + over(light, level);
+    return std::expm1(view_depth + lamp_depth + (alone ? 0 : air_depth)) + over(light, level);
 }
 
 MediumBounds& MediumBounds::operator+=(const MediumBounds& other) {
     view_depth += other.view_depth;
     lamp_depth += other.lamp_depth;
+    air_depth += other.air_depth;
     airlight_environment += other.airlight_environment;
     surface_environment += other.surface_environment;
     airlight.resize(std::max(airlight.size(), other.airlight.size()));
@@ -256,6 +257,8 @@ MediumBounds ViewBounds::of_medium(const SceneMedium& medium) const {
         const glm::dvec3 density = std::visit(MostDensity{*lit}, medium.kind);
         add_lamps(albedo_of(medium) * density, phase,
                   medium.bounds ? medium.bounds : std::optional<SceneBox>(), bounds);
+        const double length = glm::length(lit->max - lit->min);
+        if (largest(density) > 0) bounds.air_depth = 2 * largest(density) * length;
     }
     if (const std::optional<SceneBox> dims = region(medium, seen_)) {
         const double density = largest(std::visit(MostDensity{*dims}, medium.kind));
@@ -294,6 +297,7 @@ MediumBounds ViewBounds::of_blob(const SceneGaussians& medium, const ScenePhase&
     bounds.view_depth = depth_at(cone_.distance_to(blob.center));
     bounds.lamp_depth =
         reach_ > 0 ? through : depth_at(cone_.distance_to_hull(blob.center, lamps_));
+    bounds.air_depth = bounds.view_depth + bounds.lamp_depth;
     const double phase = most_of_phase(phase_of(phase_function));
     const double mass = through * kPi / (a * a);
     for (std::size_t i = 0; i < lights.size(); ++i) {

@@ -43,14 +43,15 @@ class ViewCone {
 struct MediumBounds {
     double view_depth = 0;  ///< optical depth from the camera to surfaces or the map
     double lamp_depth = 0;  ///< from lamps and map to what they light
+    double air_depth = 0;   ///< along all that rays of view pass, +inf for fog without end
     /// Radiance of a pixel, lamp by lamp: scattered along rays of view, and by surfaces that the
     /// medium lights.
     std::vector<double> airlight, surface;
     double airlight_environment = 0, surface_environment = 0;  ///< likewise, the map
 
-    /// Everything that leaving the medium out changes, over `level`; light that is there may grow
-    /// by what it no longer loses.
-    double total(double level) const;
+    /// Everything that leaving the medium out changes, over `level`: what it sends, and what others
+    /// bring that it no longer takes; `alone` where no other medium sends anything.
+    double total(double level, bool alone) const;
     MediumBounds& operator+=(const MediumBounds& other);
 };
 

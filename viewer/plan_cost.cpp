@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/plan_cost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "viewer/camera.h"
+
+namespace airlight {
+namespace {
+
+// Nanoseconds of CPU time on one core with AVX-512, as bench/plan_bench.cpp measures them.
+constexpr double kRay = 450;             // traced, the hit interpolated
+constexpr double kShadowRay = 250;       // of any kind
+constexpr double kReflect = 40;          // a diffuse surface
+constexpr double kLobe = 90;             // what a lobe takes beside it
+constexpr double kClosedForm = 190;      // airlight of a lamp, one channel, isotropic
+constexpr double kClosedPhase = 600;     // with any other phase function
+constexpr double kLitParts = 500;        // exact borders of shadows, and for each doubling of
+constexpr double kLitPerDoubling = 120;  // the triangles
+constexpr double kMapSample = 350;       // a direction drawn from the map
+
+double hit_fraction(const World& world) {
+    const Camera& camera = world.scene().camera;
+    const glm::dmat3 axes = camera_axes(camera);
+    constexpr int kWidth = 18, kHeight = 11;
+    int hits = 0;
+    for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+            const glm::dvec3 direction =
+                camera_direction(camera, axes, kWidth, kHeight, x + 0.5, y + 0.5);
+            hits += world.trace(camera.position, direction, std::numeric_limits<double>::infinity())
+                        ? 1
+                        : 0;
+        }
+    }
+    return hits / double(kWidth * kHeight);
+}
+
+// Of all media: the optical depth of a way and the density of a point.
+struct MediaCost {
+    double depth = 0, density = 0, closed_form = 0;
+    double breaks = 1;  // parts that a quadrature begins with
+
+    explicit MediaCost(const std::vector<SceneMedium>& media) {
+        for (const SceneMedium& medium : media) {
+            if (const auto* gaussians = std::get_if<SceneGaussians>(&medium.kind)) {
+                // Beyond a few, a tree finds those that a ray passes.
+                const double near = std::min(double(gaussians->blobs.size()),
+                                             12 * std::log2(2 + double(gaussians->blobs.size())));
+                depth += 50 * near;
+                density += 15 * near;
+                breaks += near;
+            } else if (std::holds_alternative<SceneAtmosphere>(medium.kind)) {
+                depth += 350;
+                density += 30;
+                breaks += 8;
+            } else if (std::holds_alternative<SceneUniform>(medium.kind)) {
+                depth += 6;
+                density += 4;
+                const auto& uniform = std::get<SceneUniform>(medium.kind);
+                const glm::dvec3 extinction = uniform.scattering + uniform.absorption;
+                const bool grey = extinction.x == extinction.y && extinction.x == extinction.z;
+                closed_form +=
+                    (grey ? 1 : 3) *
+                    (medium.phase.type == PhaseType::isotropic ? kClosedForm : kClosedPhase);
+            } else if (!std::holds_alternative<SceneSlab>(medium.kind)) {
+                depth += 60;
+                density += 20;
+                breaks += 4;
+            }
+        }
+    }
+};
+
+}  // namespace
+
+void estimate_costs(const World& world, Plan& plan) {
+    const Scene& scene = world.scene();
+    const double lamps = double(scene.lights.size());
+    const double hit = scene.objects.empty() ? 0 : hit_fraction(world);
+    const MediaCost media(plan.media);
+    const double lit = kLitParts + kLitPerDoubling * std::log2(2 + double(world.triangles()));
+    const bool closed =
+        SceneMedia(plan.media).everywhere() && !plan.everything && !plan.runs(Effect::slab);
+    // Panels of 15 points, halved once for every three digits.
+    const double panels = media.breaks * (1 - 0.33 * std::log10(plan.quadrature) / 1.0);
+    const double integral =
+        closed ? media.closed_form : 15 * panels * (2 * media.depth + media.density + 60);
+    const auto count = [&](bool LampPlan::*flag) {
+        return double(std::count_if(plan.lights.begin(), plan.lights.end(),
+                                    [&](const LampPlan& lamp) { return lamp.*flag; }));
+    };
+    const double point = count(&LampPlan::airlight_point);
+    const double gaussians = count(&LampPlan::airlight_gaussians);
+    const double surface = count(&LampPlan::surface), shafts = count(&LampPlan::shafts);
+    const double map = scene.environment ? 1 : 0;
+    plan.base_cost = kRay + hit * lamps * (kShadowRay + kReflect);
+
+    const auto set = [&](Effect effect, double cost) {
+        if (plan.runs(effect)) plan[effect].cost = cost;
+    };
+    set(Effect::attenuation, media.depth * (1 + hit * (lamps + map)));
+    set(Effect::airlight_point, point * integral);
+    set(Effect::airlight_gaussians, gaussians * integral);
+    set(Effect::surface_point,
+        hit * 0.6 * surface *
+            (kRay + kReflect + (point > 0 ? integral : 0) + (gaussians > 0 ? integral : 0)));
+    set(Effect::shafts, shafts * lit * (1 + 0.6 * hit * (surface > 0 ? 1 : 0)));
+    const double map_point = kMapSample + kShadowRay + 2 * media.depth + media.density;
+    set(Effect::airlight_environment, map_point);
+    const bool by_media = plan.runs(Effect::airlight_environment);
+    set(Effect::surface_environment,
+        hit * (kMapSample + 4 * kReflect + (by_media ? kRay + map_point : 0)));
+    set(Effect::shadow_prt, hit * 2 * kShadowRay);
+    set(Effect::brdf_glossy, hit * kLobe * (lamps + 3 * map));
+    set(Effect::slab, 4000 * lamps);
+    set(Effect::particles, 40000 * lamps);
+}
+
+}  // namespace airlight
