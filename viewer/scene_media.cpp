@@ -11,6 +11,9 @@
 namespace airlight {
 namespace {
 
+// In units of a Gaussian's 1 / scale: rules of 15 nodes between marks 2 apart see all of it.
+constexpr double kMarkWidth = 0.6;
+
 struct PartBuilder {
     std::vector<DensityField>& shapes;
     std::shared_ptr<const GaussianTree>& tree;
@@ -137,9 +140,9 @@ glm::dvec3 MediumPart::depth(const glm::dvec3& origin, const glm::dvec3& directi
 }
 
 void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-                      std::vector<double>& marks, double least) const {
-    const auto add = [&](double at) {
-        if (at > 0 && at < distance) marks.push_back(at);
+                      std::vector<Mark>& marks, double least) const {
+    const auto add = [&](double at, double width = 0) {
+        if (at > 0 && at < distance) marks.push_back({at, width});
     };
     if (bounds_) {
         if (const auto span = clip_to_box(*bounds_, origin, direction, distance)) {
@@ -153,7 +156,9 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
         const double off = blob.scale * pass.rho_perp;
         if (!(off < 3)) return;
         if (blob.amplitude * std::sqrt(kPi) * std::exp(-off * off) < least * blob.scale) return;
-        for (const double step : {-1.5, 0.0, 1.5}) add(pass.m_proj + step / blob.scale);
+        for (const double step : {-1.5, 0.0, 1.5}) {
+            add(pass.m_proj + step / blob.scale, kMarkWidth / blob.scale);
+        }
     };
     if (tree_) {
         for (const std::uint32_t i : tree_->along(origin, direction, distance, 1e-4)) {
@@ -218,10 +223,16 @@ glm::dvec3 SceneMedia::transmittance(const glm::dvec3& origin, const glm::dvec3&
 
 std::vector<double> SceneMedia::marks(const glm::dvec3& origin, const glm::dvec3& direction,
                                       double distance, double least) const {
-    std::vector<double> marks = {0, distance};
-    for (const MediumPart& part : parts_) part.mark(origin, direction, distance, marks, least);
-    std::sort(marks.begin(), marks.end());
-    marks.erase(std::unique(marks.begin(), marks.end()), marks.end());
+    std::vector<MediumPart::Mark> all;
+    for (const MediumPart& part : parts_) part.mark(origin, direction, distance, all, least);
+    std::sort(all.begin(), all.end(), [](const MediumPart::Mark& a, const MediumPart::Mark& b) {
+        return a.at != b.at ? a.at < b.at : a.width < b.width;
+    });
+    std::vector<double> marks = {0};
+    for (const MediumPart::Mark& mark : all) {
+        if (mark.at - marks.back() > mark.width) marks.push_back(mark.at);
+    }
+    marks.push_back(distance);
     return marks;
 }
 

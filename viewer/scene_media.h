@@ -45,10 +45,14 @@ class MediumPart {
     /// kFewBlobs Gaussians those are left out whose depths add up to kTreeDepth at most.
     glm::dvec3 depth(const glm::dvec3& origin, const glm::dvec3& direction, double distance) const;
 
+    /// A distance along a ray; another as near as `width` does as well.
+    struct Mark {
+        double at = 0, width = 0;
+    };
     /// Adds distances in (0, distance) at which the medium begins or ends along a ray, and those
     /// around which a Gaussian is dense, unless the depth through it is under `least`.
     void mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-              std::vector<double>& marks, double least = 0) const;
+              std::vector<Mark>& marks, double least = 0) const;
 
     /// The extinction of a medium that is the same everywhere.
     const std::optional<glm::dvec3>& everywhere() const { return everywhere_; }
@@ -90,7 +94,7 @@ class SceneMedia {
     glm::dvec3 transmittance(const glm::dvec3& origin, const glm::dvec3& direction,
                              double distance) const;
 
-    /// 0, the marks of all media and `distance`, ascending.
+    /// 0, the marks of all media and `distance`, ascending, thinned out where they crowd.
     std::vector<double> marks(const glm::dvec3& origin, const glm::dvec3& direction,
                               double distance, double least = 0) const;
 
