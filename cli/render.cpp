@@ -18,6 +18,7 @@
 #include "core/progress.h"
 #include "envmap/io.h"
 #include "envmap/sheet.h"
+#include "viewer/fast_picture.h"
 #include "viewer/reference_picture.h"
 #include "viewer/scene_file.h"
 
@@ -67,6 +68,58 @@ void write_display(const std::string& path, const Image& image, double stops, bo
     write_png(path, sheet, force);
 }
 
+void write_picture(const RenderRequest& request, const Image& image, bool force) {
+    if (is_png(request.output)) {
+        write_display(request.output, image, request.exposure, force);
+        return;
+    }
+    WriteOptions write;
+    write.force = force;
+    write_image(request.output, image, write);
+}
+
+void run_fast(const RenderRequest& request, const World& world, const Plan& plan,
+              double read_seconds, const CommonOptions& common) {
+    const auto start = std::chrono::steady_clock::now();
+    FastPictureOptions options;
+    options.samples = std::min(request.options.samples, kLargestFastSamples);
+    options.width = request.options.width;
+    options.height = request.options.height;
+    const Camera& camera = world.scene().camera;
+    const int width = options.width > 0 ? options.width : camera.width;
+    const int height = options.height > 0 ? options.height : camera.height;
+    FastPicture picture;
+    {
+        ProgressOptions drawing;
+        drawing.quiet = common.verbosity < 0;
+        Progress progress("render", std::uint64_t(width) * std::uint64_t(height), drawing);
+        picture = render_fast(world, plan, {}, options, common.max_memory, &progress);
+    }
+    const double render_seconds = seconds_since(start);
+    write_picture(request, picture.image, common.force);
+    spdlog::info("{}: {} x {} pixels, {} samples, {:.2f} s", request.output, width, height,
+                 picture.samples, render_seconds);
+    if (!common.json) return;
+    nlohmann::ordered_json effects;
+    for (const auto& [effect, name] : kEffects) {
+        effects[std::string(name)] = picture.counts[effect];
+    }
+    print(nlohmann::ordered_json{{"version", AIRLIGHT_VERSION},
+                                 {"input", request.inputs[0]},
+                                 {"output", request.output},
+                                 {"engine", "fast"},
+                                 {"width", width},
+                                 {"height", height},
+                                 {"samples", picture.samples},
+                                 {"triangles", world.triangles()},
+                                 {"rays", picture.counts.rays + picture.counts.shadow_rays},
+                                 {"tables", picture.counts.tables},
+                                 {"evaluations", effects},
+                                 {"plan", to_json(plan)},
+                                 {"seconds", {{"read", read_seconds}, {"render", render_seconds}}},
+                                 {"peak_memory_bytes", peak_memory()}});
+}
+
 void run_render(const RenderRequest& request, const CommonOptions& common) {
     check(request, common);
     auto start = std::chrono::steady_clock::now();
@@ -87,6 +140,10 @@ void run_render(const RenderRequest& request, const CommonOptions& common) {
     planning.height = height;
     const Plan plan = make_plan(world, planning);
     world.set_media(plan.media);
+    if (plan.engine == Engine::fast) {
+        run_fast(request, world, plan, read_seconds, common);
+        return;
+    }
     options.reference.quadrature = plan.quadrature;
     ReferencePicture picture;
     {
@@ -104,13 +161,7 @@ void run_render(const RenderRequest& request, const CommonOptions& common) {
             "with --samples",
             input, picture.unfinished, request.options.samples);
     }
-    if (is_png(request.output)) {
-        write_display(request.output, picture.image, request.exposure, common.force);
-    } else {
-        WriteOptions write;
-        write.force = common.force;
-        write_image(request.output, picture.image, write);
-    }
+    write_picture(request, picture.image, common.force);
     spdlog::info("{}: {} x {} pixels, {} samples, noise {:.2g} of the brightest, {:.1f} s",
                  request.output, width, height, picture.samples, picture.noise, render_seconds);
     if (!common.json) return;

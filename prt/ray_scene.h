@@ -82,6 +82,9 @@ class RayScene {
     /// normal. |coordinates| beyond 1e15 (isolated vertices far out) end there.
     glm::vec3 origin(const glm::dvec3& position, const glm::dvec3& normal) const;
 
+    /// Units of the scene in a world unit.
+    double scale() const { return scale_; }
+
     /// A point of the world in units of the scene, for rays that begin anywhere; clamped likewise.
     glm::vec3 point(const glm::dvec3& position) const;
 

@@ -30,9 +30,12 @@ class EnvironmentSampler {
     double brightest() const;
     /// At least the integral of the radiance over all directions, in any channel.
     double power() const { return 3 * scale_ * rows_.back(); }
+    /// As it was given, neither turned nor scaled.
+    const Image& map() const { return map_; }
+    /// A direction of the world as the map has it.
+    glm::dvec3 to_map(const glm::dvec3& direction) const;
 
   private:
-    glm::dvec3 to_map(const glm::dvec3& direction) const;
     glm::dvec3 to_world(const glm::dvec3& direction) const;
     double pixel_power(int row, int column) const;  ///< mean radiance times solid angle, unscaled
 

@@ -129,14 +129,18 @@ std::optional<WorldHit> World::trace(const glm::dvec3& origin, const glm::dvec3&
     if (!rays_) return {};
     const std::optional<RayHit> found = rays_->find_nearest(origin, direction, distance);
     if (!found) return {};
-    const Mesh& mesh = meshes_[found->mesh];
-    const glm::uvec3 corner = mesh.triangles[found->triangle];
-    const double u = found->u, v = found->v;
+    return hit_at(found->mesh, found->triangle, found->u, found->v, origin, direction);
+}
+
+WorldHit World::hit_at(std::size_t object, std::size_t triangle, double u, double v,
+                       const glm::dvec3& origin, const glm::dvec3& direction) const {
+    const Mesh& mesh = meshes_[object];
+    const glm::uvec3 corner = mesh.triangles[triangle];
     const auto between = [&](const std::vector<glm::dvec3>& values) {
         return (1 - u - v) * values[corner.x] + u * values[corner.y] + v * values[corner.z];
     };
     WorldHit hit;
-    hit.object = found->mesh;
+    hit.object = object;
     hit.position = between(mesh.positions);
     hit.distance = glm::length(hit.position - origin);
     const glm::dvec3 a = mesh.positions[corner.x];

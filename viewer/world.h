@@ -54,10 +54,17 @@ class World {
     const SceneBox& box(std::size_t object) const { return boxes_[object]; }
     /// Replaces the media but for slabs, by what a plan leaves of them.
     void set_media(const std::vector<SceneMedium>& media) { media_ = SceneMedia(media); }
+    /// Of the objects, in world coordinates.
+    const std::vector<Mesh>& meshes() const { return meshes_; }
+    /// All of them; null without objects.
+    const RayScene* rays() const { return rays_.get(); }
 
     /// The nearest object within `distance` along a unit direction.
     std::optional<WorldHit> trace(const glm::dvec3& origin, const glm::dvec3& direction,
                                   double distance) const;
+    /// A ray's hit at (1 - u - v) a + u b + v c of a triangle's corners.
+    WorldHit hit_at(std::size_t object, std::size_t triangle, double u, double v,
+                    const glm::dvec3& origin, const glm::dvec3& direction) const;
     /// Whether an object lies between two points.
     bool is_blocked(const glm::dvec3& from, const glm::dvec3& to) const;
     /// The shadows of all objects in media; null without objects. Built when first asked for.

@@ -62,6 +62,25 @@ TEST(RenderCommand, EqualRunsGiveEqualBytes) {
     EXPECT_EQ(read_bytes(directory / "1.png"), read_bytes(directory / "2.png"));
 }
 
+TEST(RenderCommand, TheFastEngineMakesTheSamePicture) {
+    const ScratchDirectory directory;
+    const std::string scene = write_scene(directory, kLamp);
+    ReadOptions any;
+    any.allow_any_aspect = true;
+    std::vector<Image> pictures;
+    for (const std::string engine : {"reference", "fast"}) {
+        const std::string exr = directory / (engine + ".exr");
+        const Outcome outcome = run({"render", scene, "-o", exr, "--samples", "8", "--size", "6x4",
+                                     "--engine", engine, "--json"});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_EQ(nlohmann::json::parse(outcome.out)["engine"], engine);
+        pictures.push_back(read_image(exr, any));
+    }
+    for (std::size_t i = 0; i < pictures[0].pixels.size(); ++i) {
+        EXPECT_NEAR(pictures[0].pixels[i], pictures[1].pixels[i], 1e-5);
+    }
+}
+
 TEST(RenderCommand, RefusesInOneSentence) {
     const ScratchDirectory directory;
     const std::string scene = write_scene(directory, kLamp), out = directory / "a.exr";

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fast engine: what viewer/reference.h integrates and samples, by the papers' closed forms,
+// tables and products. Nothing in it is drawn at random.
+//
+//     lamps in uniform media      [Sun05] eq. 11 in vectors (medium/airlight_batch.h), in shadow
+//                                 part by part of the ray
+//     lamps in other media        Gauss-Legendre rules along the ray
+//     media onto surfaces         [Sun05] eq. 17 and 18 by tables of G_n (medium/surface_batch.h),
+//                                 with the mean extinction towards the lamp ([Zhou07] sec. 4.1)
+//
+// Rays and shadow rays of neighbouring pixels are traced in packets. What the plan leaves out is
+// neither built nor evaluated; counts show it.
+#pragma once
+
+#include <memory>
+
+#include "viewer/fast_block.h"
+#include "viewer/fast_lamps.h"
+#include "viewer/fast_methods.h"
+#include "viewer/plan.h"
+
+namespace airlight {
+
+class FastRenderer {
+  public:
+    /// Builds what the plan calls for, for rays from the scene's camera. The world, whose media
+    /// should be those of the plan, stays where it is.
+    FastRenderer(const World& world, const Plan& plan, const FastMethods& methods = {});
+    FastRenderer(const FastRenderer&) = delete;
+    FastRenderer& operator=(const FastRenderer&) = delete;
+
+    /// Radiance that comes to the camera along `count` unit directions. Neighbours should go
+    /// almost the same way. The result is the same however many threads call, each with arrays of
+    /// its own; a ray's may depend on its block in whether it grazes a triangle.
+    void shade(const glm::dvec3* directions, std::size_t count, LayeredRadiance* out,
+               FastCounts& counts) const;
+
+    /// What the constructor built.
+    const FastCounts& built() const { return built_; }
+
+  private:
+    void trace(FastBlock& block, FastCounts& counts) const;
+    void shade_block(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
+
+    const World& world_;
+    Plan plan_;
+    FastMethods methods_;
+    FastCounts built_;
+    FastLamps lamps_;
+};
+
+}  // namespace airlight

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/fast_lamps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/constants.h"
+#include "prt/ray_packets.h"
+#include "viewer/material.h"
+
+namespace airlight {
+namespace {
+
+// Of G_n's tables (medium/surface_batch.h): the exponents, and points on a side of a table that
+// errs by 1e-4.
+constexpr double kLeastExponent = 1, kLargestExponent = 1000;
+constexpr int kLobeTable = 48;
+
+double clamped_exponent(double exponent) {
+    return std::clamp(exponent, kLeastExponent, kLargestExponent);
+}
+
+int shadow_map_size(const Scene& scene) {
+    return scene.shafts ? std::min(scene.shafts->shadow_map, 1024) : 512;
+}
+
+}  // namespace
+
+// What a lamp sends to the end of a ray of view.
+struct FastLamps::Arrival {
+    std::uint32_t ray = 0;
+    double distance = 0;     // to the lamp
+    glm::dvec3 to_light{0};  // unit
+    glm::dvec3 depth{0};     // of the way there
+    bool above = false;      // it stands on the side of the face that is seen
+};
+
+FastLamps::FastLamps(const World& world, const Plan& plan, const FastMethods& methods,
+                     FastCounts& counts)
+    : world_(world), plan_(plan), methods_(methods) {
+    const Scene& scene = world.scene();
+    uniform_ = world.media().everywhere() && world.slabs().empty();
+    const auto wanted = [&](bool LampPlan::*part) {
+        return std::any_of(plan.lights.begin(), plan.lights.end(),
+                           [&](const LampPlan& lamp) { return lamp.*part; });
+    };
+    if (plan.runs(Effect::surface_point) && wanted(&LampPlan::surface) &&
+        methods.surface_point == FastSurfacePoint::gn_table && !scene.objects.empty()) {
+        lobes_.push_back(std::make_unique<SurfaceBatchTable>(1, kLobeTable));
+        for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+            lobe_of_object_.push_back(0);
+            const auto* phong = std::get_if<PhongMaterial>(&world.material(i).kind);
+            if (!phong || !plan.objects[i].glossy) continue;
+            const double exponent = clamped_exponent(phong->exponent);
+            for (std::size_t k = 0; k < lobes_.size(); ++k) {
+                if (lobes_[k]->exponent() == exponent) lobe_of_object_[i] = k;
+            }
+            if (lobes_[lobe_of_object_[i]]->exponent() == exponent) continue;
+            lobe_of_object_[i] = lobes_.size();
+            lobes_.push_back(std::make_unique<SurfaceBatchTable>(exponent, kLobeTable));
+        }
+        counts.tables += lobes_.size();
+    }
+    const bool mapped =
+        methods.shafts != FastShafts::unshadowed && methods.shafts != FastShafts::intervals;
+    if (plan.runs(Effect::shafts) && mapped && world.rays()) {
+        shadow_maps_.resize(scene.lights.size());
+        for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+            if (!plan.lights[i].shafts) continue;
+            shadow_maps_[i] =
+                LampShadowMap(*world.rays(), scene.lights[i].position, shadow_map_size(scene));
+            ++counts.tables;
+        }
+    }
+}
+
+glm::dvec3 FastLamps::depth(const glm::dvec3& from, const glm::dvec3& direction,
+                            double distance) const {
+    if (!plan_.runs(Effect::attenuation)) return glm::dvec3(0);
+    glm::dvec3 depth = world_.media().depth(from, direction, distance);
+    if (!world_.slabs().empty()) depth += world_.slabs().depth(from, direction, distance);
+    return depth;
+}
+
+void FastLamps::light_surfaces(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const {
+    if (block.hits.empty()) return;
+    std::vector<Arrival> arrivals;
+    for (std::size_t lamp = 0; lamp < world_.scene().lights.size(); ++lamp) {
+        const PointLight& light = world_.scene().lights[lamp];
+        if (!(largest(light.intensity) > 0)) continue;
+        arrivals.clear();
+        for (const std::uint32_t i : block.hits) {
+            const FastRay& ray = block.rays[i];
+            const glm::dvec3 to_light = light.position - ray.from;
+            const double r = glm::length(to_light);
+            if (!(r > 0)) continue;
+            Arrival arrival;
+            arrival.ray = i;
+            arrival.distance = r;
+            arrival.to_light = to_light / r;
+            arrival.above = glm::dot(to_light, ray.hit.face) > 0;
+            arrivals.push_back(arrival);
+        }
+        const bool scatters = !lobes_.empty() && plan_.lights[lamp].surface;
+        if (!world_.media().empty() || !world_.slabs().empty()) {
+            for (Arrival& arrival : arrivals) {
+                if (!arrival.above && !scatters) continue;
+                arrival.depth =
+                    depth(block.rays[arrival.ray].from, arrival.to_light, arrival.distance);
+            }
+        }
+        add_direct(lamp, block, arrivals, out, counts);
+        if (scatters) add_scattered(lamp, block, arrivals, out, counts);
+    }
+}
+
+void FastLamps::add_direct(std::size_t lamp, FastBlock& block, std::vector<Arrival>& arrivals,
+                           LayeredRadiance* out, FastCounts& counts) const {
+    const PointLight& light = world_.scene().lights[lamp];
+    std::vector<std::uint32_t> asked;
+    block.points.clear();
+    for (std::uint32_t k = 0; k < arrivals.size(); ++k) {
+        const Arrival& arrival = arrivals[k];
+        const FastRay& ray = block.rays[arrival.ray];
+        if (!arrival.above || !(glm::dot(ray.hit.normal, arrival.to_light) > 0)) continue;
+        asked.push_back(k);
+        block.points.push_back(ray.from);
+    }
+    if (asked.empty()) return;
+    block.blocked.resize(asked.size());
+    find_blocked_packets(*world_.rays(), asked.size(), block.points.data(), light.position,
+                         block.blocked.data());
+    counts.shadow_rays += asked.size();
+    for (std::size_t k = 0; k < asked.size(); ++k) {
+        if (block.blocked[k]) continue;
+        const Arrival& arrival = arrivals[asked[k]];
+        const FastRay& ray = block.rays[arrival.ray];
+        const glm::dvec3 f = reflect(world_.material(ray.hit.object), ray.hit.normal,
+                                     -ray.direction, arrival.to_light);
+        out[arrival.ray][RadianceLayer::direct] += ray.transmittance * f * light.intensity /
+                                                   (arrival.distance * arrival.distance) *
+                                                   transmittance_of(arrival.depth);
+    }
+}
+
+// medium/surface_shading.h, with the mean extinction and scattering of the way to the lamp as
+// [Zhou07] sec. 4.1 has it. Diffuse parts go by G_1 about the normal, lobes by G_n about the
+// mirrored view.
+void FastLamps::add_scattered(std::size_t lamp, FastBlock& block,
+                              const std::vector<Arrival>& arrivals, LayeredRadiance* out,
+                              FastCounts& counts) const {
+    const PointLight& light = world_.scene().lights[lamp];
+    const SceneMedia& media = world_.media();
+    std::vector<std::uint32_t> chosen;
+    std::vector<glm::dvec3> factors;  // reflectance * sigma_s
+    auto& [thickness, angle, value, spare, unused] = block.columns;
+    for (std::size_t lobe = 0; lobe < lobes_.size(); ++lobe) {
+        const double n = lobes_[lobe]->exponent();
+        chosen.clear();
+        factors.clear();
+        angle.clear();
+        for (std::uint32_t k = 0; k < arrivals.size(); ++k) {
+            const Arrival& arrival = arrivals[k];
+            const FastRay& ray = block.rays[arrival.ray];
+            const Material& material = world_.material(ray.hit.object).kind;
+            const auto* phong = std::get_if<PhongMaterial>(&material);
+            const auto* lambert = std::get_if<LambertMaterial>(&material);
+            glm::dvec3 reflectance(0), axis = ray.hit.normal;
+            if (lobe == 0 && lambert) reflectance = lambert->diffuse / kPi;
+            if (lobe == 0 && phong) reflectance = phong->diffuse / kPi;
+            if (lobe > 0 && phong && lobe_of_object_[ray.hit.object] == lobe) {
+                reflectance = (n + 1) / (2 * kPi) * phong->specular;
+                axis = ray.direction - 2 * glm::dot(ray.hit.normal, ray.direction) * ray.hit.normal;
+            }
+            if (!(largest(reflectance) > 0)) continue;
+            glm::dvec3 scattering(0);
+            if (media.everywhere()) {
+                for (const MediumPart& part : media.parts()) {
+                    scattering += part.albedo() * *part.everywhere();
+                }
+            } else {
+                for (const MediumPart& part : media.parts()) {
+                    scattering += part.albedo() *
+                                  part.depth(ray.from, arrival.to_light, arrival.distance) /
+                                  arrival.distance;
+                }
+            }
+            const float cosine = static_cast<float>(glm::dot(axis, arrival.to_light));
+            const float sine = static_cast<float>(glm::length(glm::cross(axis, arrival.to_light)));
+            chosen.push_back(k);
+            angle.push_back(std::atan2(sine, cosine));
+            factors.push_back(reflectance * scattering / (2 * kPi * arrival.distance) *
+                              light.intensity * ray.transmittance);
+        }
+        if (chosen.empty()) continue;
+        counts[Effect::surface_point] += chosen.size();
+        value.resize(chosen.size());
+        thickness.resize(chosen.size());
+        bool grey = true;
+        for (int c = 0; c < (grey ? 1 : 3); ++c) {
+            for (std::size_t k = 0; k < chosen.size(); ++k) {
+                const glm::dvec3& depth = arrivals[chosen[k]].depth;
+                grey = grey && depth.x == depth.y && depth.x == depth.z;
+                thickness[k] = static_cast<float>(depth[c]);
+            }
+            lobes_[lobe]->surface_batch(chosen.size(), thickness.data(), angle.data(),
+                                        value.data());
+            for (std::size_t k = 0; k < chosen.size(); ++k) {
+                glm::dvec3& sum = out[arrivals[chosen[k]].ray][RadianceLayer::surface_point];
+                if (grey) {
+                    sum += double(value[k]) * factors[k];
+                } else {
+                    sum[c] += double(value[k]) * factors[k][c];
+                }
+            }
+        }
+    }
+}
+
+}  // namespace airlight

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light of lamps as the fast engine sums it: on surfaces, onto them from the media, along rays.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "medium/surface_batch.h"
+#include "viewer/fast_block.h"
+#include "viewer/fast_methods.h"
+#include "viewer/lamp_shadow_map.h"
+#include "viewer/plan.h"
+
+namespace airlight {
+
+class FastLamps {
+  public:
+    /// Builds what the plan calls for and counts it. World, plan and methods stay where they are.
+    FastLamps(const World& world, const Plan& plan, const FastMethods& methods, FastCounts& counts);
+
+    /// Adds lamps on the surfaces that the block's rays end at, to the layers direct and
+    /// surface_point of out[i] for ray i, dimmed on the way to the viewer.
+    void light_surfaces(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
+
+    /// Adds what media that are no Gaussians send along the rays.
+    void light_media(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
+
+  private:
+    struct Arrival;
+    void add_direct(std::size_t lamp, FastBlock& block, std::vector<Arrival>& arrivals,
+                    LayeredRadiance* out, FastCounts& counts) const;
+    void add_scattered(std::size_t lamp, FastBlock& block, const std::vector<Arrival>& arrivals,
+                       LayeredRadiance* out, FastCounts& counts) const;
+    void light_uniform(std::size_t lamp, FastBlock& block, LayeredRadiance* out,
+                       FastCounts& counts) const;
+    void light_varying(std::size_t lamp, const FastRay& ray, const glm::dvec3& origin,
+                       LayeredRadiance& out, FastCounts& counts) const;
+    void lit(std::size_t lamp, const glm::dvec3& origin, const glm::dvec3& direction,
+             double distance, std::vector<RayInterval>& parts) const;
+    glm::dvec3 depth(const glm::dvec3& from, const glm::dvec3& direction, double distance) const;
+
+    const World& world_;
+    const Plan& plan_;
+    const FastMethods& methods_;
+    std::vector<std::unique_ptr<SurfaceBatchTable>> lobes_;  ///< G_n; [0] is Lambert's
+    std::vector<std::size_t> lobe_of_object_;                ///< of its glossy part
+    std::vector<LampShadowMap> shadow_maps_;                 ///< by lamp; empty unless asked for
+    bool uniform_ = false;                                   ///< all media are the same everywhere
+};
+
+}  // namespace airlight
