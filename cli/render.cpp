@@ -31,6 +31,7 @@ struct RenderRequest {
     ReferencePictureOptions options;
     PlanOptions plan;
     double exposure = 0;
+    bool bounces = false;  ///< --bounces is there
 };
 
 bool is_png(const std::string& path) {
@@ -47,6 +48,19 @@ void check(const RenderRequest& request, const CommonOptions& common) {
     }
     if (request.output.empty()) {
         throw Error(ErrorCode::usage, "the output is missing: give -o FILE.exr or FILE.png");
+    }
+    if (request.options.scattering == Scattering::multiple && request.plan.engine == Engine::fast) {
+        throw Error(ErrorCode::usage, "is for --engine reference", "--scattering multiple");
+    }
+    if (request.options.scattering == Scattering::multiple &&
+        (request.plan.all || !request.plan.only.full())) {
+        throw Error(ErrorCode::usage,
+                    "takes no --all, --only or --without, which choose among effects of light that "
+                    "is scattered once",
+                    "--scattering multiple");
+    }
+    if (request.bounces && request.options.scattering == Scattering::single) {
+        throw Error(ErrorCode::usage, "is for --scattering multiple", "--bounces");
     }
     if (is_png(request.output)) {
         check_target(request.output, common.force);
@@ -129,17 +143,23 @@ void run_render(const RenderRequest& request, const CommonOptions& common) {
     reading.max_memory = common.max_memory;
     World world(scene, reading);
     const double read_seconds = seconds_since(start);
+    const bool multiple = request.options.scattering == Scattering::multiple;
+    if (scene.shafts && multiple) {
+        spdlog::warn("{}: --scattering multiple leaves out the particles of shafts", input);
+    }
 
     start = std::chrono::steady_clock::now();
     const int width = request.options.width > 0 ? request.options.width : scene.camera.width;
     const int height = request.options.height > 0 ? request.options.height : scene.camera.height;
     ReferencePictureOptions options = request.options;
     PlanOptions planning = request.plan;
+    // Its bounds are those of light that is scattered once.
+    planning.bounds = !multiple;
     planning.tolerance = options.tolerance;
     planning.width = width;
     planning.height = height;
     const Plan plan = make_plan(world, planning);
-    world.set_media(plan.media);
+    if (!multiple) world.set_media(plan.media);
     if (plan.engine == Engine::fast) {
         run_fast(request, world, plan, read_seconds, common);
         return;
@@ -165,31 +185,36 @@ void run_render(const RenderRequest& request, const CommonOptions& common) {
     spdlog::info("{}: {} x {} pixels, {} samples, noise {:.2g} of the brightest, {:.1f} s",
                  request.output, width, height, picture.samples, picture.noise, render_seconds);
     if (!common.json) return;
-    print(nlohmann::ordered_json{{"version", AIRLIGHT_VERSION},
-                                 {"input", input},
-                                 {"output", request.output},
-                                 {"engine", "reference"},
-                                 {"width", width},
-                                 {"height", height},
-                                 {"samples", picture.samples},
-                                 {"noise", picture.noise},
-                                 {"unfinished_pixels", picture.unfinished},
-                                 {"triangles", world.triangles()},
-                                 {"rays", picture.counts.rays},
-                                 {"line_points", picture.counts.line_points},
-                                 {"plan", to_json(plan)},
-                                 {"seconds", {{"read", read_seconds}, {"render", render_seconds}}},
-                                 {"peak_memory_bytes", peak_memory()}});
+    nlohmann::ordered_json report = {
+        {"version", AIRLIGHT_VERSION},
+        {"input", input},
+        {"output", request.output},
+        {"engine", "reference"},
+        {"scattering", std::string(method_name(kScatterings, request.options.scattering))},
+        {"width", width},
+        {"height", height},
+        {"samples", picture.samples},
+        {"noise", picture.noise},
+        {"unfinished_pixels", picture.unfinished},
+        {"triangles", world.triangles()},
+        {"rays", picture.counts.rays},
+        {"line_points", picture.counts.line_points},
+        {"seconds", {{"read", read_seconds}, {"render", render_seconds}}},
+        {"peak_memory_bytes", peak_memory()}};
+    if (!multiple) report["plan"] = to_json(plan);
+    print(report);
 }
 
 }  // namespace
 
 Command declare_render(CLI::App& program) {
     Command command = declare_command(
-        program, "render", "SCENE -o OUT", "Render a scene with light that is scattered once",
+        program, "render", "SCENE -o OUT",
+        "Render a scene, with light scattered once or many times",
         "  airlight render courtyard.json -o courtyard.png\n"
         "  airlight render courtyard.json -o courtyard.exr --samples 256 --tolerance 0.002\n"
         "  airlight render courtyard.json -o small.png --size 200x150 --json\n"
+        "  airlight render courtyard.json -o all.png --scattering multiple --samples 256\n"
         "OUT is .exr, .hdr, .pfm or .tif (linear radiance) or .png (tone-mapped).");
     const auto request = std::make_shared<RenderRequest>();
     command.app->add_option("scenes", request->inputs, "A scene (docs/SCENES.md)")
@@ -197,6 +222,22 @@ Command declare_render(CLI::App& program) {
     add_flag(command, "-o,--output", "OUT", "The picture",
              [=](const std::string& text) { request->output = text; });
     add_plan_flags(command, request->plan);
+    add_flag(
+        command, "--scattering", "single|multiple",
+        "How often media and surfaces pass light on: once, or any number of times by paths "
+        "(default: single)",
+        [=](const std::string& text) {
+            request->options.scattering =
+                kScatterings[parse_choice(text, "--scattering", {"single", "multiple"})].method;
+        });
+    add_flag(command, "--bounces", "N",
+             "Points at most where a path is scattered or reflected, with --scattering multiple "
+             "(default: 1024)",
+             [=](const std::string& text) {
+                 request->options.paths.max_bounces =
+                     parse_integer(text, "--bounces", 1, kLargestBounces);
+                 request->bounces = true;
+             });
     add_flag(command, "--size", "WxH", "Pixels (default: the camera's)",
              [=](const std::string& text) {
                  parse_picture_size(text, request->options.width, request->options.height);

@@ -67,6 +67,7 @@ class EffectSet {
     constexpr void add(Effect effect) { bits_ |= 1u << static_cast<unsigned>(effect); }
     constexpr void remove(Effect effect) { bits_ &= ~(1u << static_cast<unsigned>(effect)); }
     constexpr bool empty() const { return bits_ == 0; }
+    constexpr bool full() const { return bits_ == all().bits_; }
 
   private:
     unsigned bits_ = 0;

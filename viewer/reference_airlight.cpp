@@ -109,8 +109,10 @@ glm::dvec3 ReferenceRenderer::airlight_of(std::size_t lamp, Scatterers which,
             return glm::dvec3(0);
         }
         if (!attenuates()) return sent;
-        return sent * transmittance_of(media.depth(origin, direction, t) +
-                                       straight_depth(x, to_light / r, r, counts));
+        const glm::dvec3 left = transmittance_of(media.depth(origin, direction, t) +
+                                                 straight_depth(x, to_light / r, r, counts));
+        // Deep under an exponential layer the density is infinite.
+        return largest(left) > 0 ? sent * left : glm::dvec3(0);
     };
     return light.intensity / height * integrate_panels(integrand, panels, quadrature).value;
 }

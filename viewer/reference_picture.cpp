@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -45,6 +47,25 @@ void check(const ReferencePictureOptions& options) {
     }
 }
 
+using RadianceSampler = std::function<glm::dvec3(
+    const glm::dvec3& origin, const glm::dvec3& direction, SampleStream&, ReferenceCounts&)>;
+
+template <class Renderer>
+RadianceSampler sampler_by(Renderer renderer) {
+    return [renderer = std::move(renderer)](const glm::dvec3& origin, const glm::dvec3& direction,
+                                            SampleStream& stream, ReferenceCounts& counts) {
+        return renderer.radiance(origin, direction, stream, counts);
+    };
+}
+
+RadianceSampler sampler_of(const World& world, const Plan& plan,
+                           const ReferencePictureOptions& options) {
+    if (options.scattering == Scattering::multiple) {
+        return sampler_by(PathTracer(world, options.paths));
+    }
+    return sampler_by(ReferenceRenderer(world, plan, options.reference));
+}
+
 }  // namespace
 
 ReferencePicture render_reference(const World& world, const ReferencePictureOptions& options,
@@ -66,7 +87,7 @@ ReferencePicture render_reference(const World& world, const Plan& plan,
     require_memory(checked_multiply(pixels, sizeof(PixelSum) + 12, "the picture"), max_memory,
                    "the picture", world.scene().path);
     const glm::dmat3 axes = camera_axes(camera);
-    const ReferenceRenderer renderer(world, plan, options.reference);
+    const RadianceSampler radiance = sampler_of(world, plan, options);
     std::vector<PixelSum> sums(pixels);
     ReferencePicture result;
 
@@ -82,10 +103,9 @@ ReferencePicture render_reference(const World& world, const Plan& plan,
                 while (sum.count < most && !(sum.count >= kFirstSamples && sum.error() <= wanted)) {
                     SampleStream stream(i, sum.count);
                     const double dx = stream.next(), dy = stream.next();
-                    sum.add(renderer.radiance(
-                        camera.position,
-                        camera_direction(camera, axes, width, height, x + dx, y + dy), stream,
-                        counts));
+                    sum.add(radiance(camera.position,
+                                     camera_direction(camera, axes, width, height, x + dx, y + dy),
+                                     stream, counts));
                 }
             }
             if (progress) progress->tick(end - begin);

@@ -1,18 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures by viewer/reference.h.
+// Pictures by viewer/reference.h, or by viewer/path_tracer.h.
 #pragma once
 
 #include <cstdint>
 
 #include "core/progress.h"
 #include "envmap/image.h"
+#include "viewer/path_tracer.h"
 #include "viewer/reference.h"
 
 namespace airlight {
 
+/// How often light is scattered.
+enum class Scattering { single, multiple };
+inline constexpr NamedMethod<Scattering> kScatterings[] = {
+    {Scattering::single, "single"},
+    {Scattering::multiple, "multiple"},
+};
+
 struct ReferencePictureOptions {
-    ReferenceOptions reference;
-    int samples = 16;  ///< of each pixel at most, 1 … kLargestSamples
+    Scattering scattering = Scattering::single;
+    ReferenceOptions reference;  ///< of single scattering
+    PathTracerOptions paths;     ///< of multiple scattering, which takes no plan
+    int samples = 16;            ///< of each pixel at most, 1 … kLargestSamples
     /// Standard error, relative to the brightest pixel, at which a pixel needs no more samples
     /// than the first kFirstSamples; 0 makes all.
     double tolerance = 0;

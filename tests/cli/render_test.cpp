@@ -81,6 +81,35 @@ TEST(RenderCommand, TheFastEngineMakesTheSamePicture) {
     }
 }
 
+TEST(RenderCommand, ScatteredAgainThereIsMoreLight) {
+    const ScratchDirectory directory;
+    const std::string scene = write_scene(directory, kLamp);
+    ReadOptions any;
+    any.allow_any_aspect = true;
+    std::vector<double> sums;
+    for (const std::string scattering : {"single", "multiple"}) {
+        for (const std::string threads : {"1", "2"}) {
+            const std::string exr = directory / (scattering + threads + ".exr");
+            const Outcome outcome =
+                run({"render", scene, "-o", exr, "--size", "4x3", "--samples", "512",
+                     "--scattering", scattering, "--threads", threads, "--json"});
+            EXPECT_EQ(outcome.status, 0) << outcome.err;
+            EXPECT_EQ(nlohmann::json::parse(outcome.out)["scattering"], scattering);
+            double sum = 0;
+            for (const float value : read_image(exr, any).pixels) sum += value;
+            sums.push_back(sum);
+        }
+    }
+    EXPECT_EQ(sums[0], sums[1]);
+    EXPECT_EQ(sums[2], sums[3]);
+    // Optical thickness 1.25 to the wall: some tens of percent more.
+    EXPECT_GT(sums[2], 1.1 * sums[0]);
+    EXPECT_LT(sums[2], 2 * sums[0]);
+    const Outcome once = run({"render", scene, "-o", directory / "b.exr", "--size", "4x3",
+                              "--scattering", "multiple", "--bounces", "1"});
+    EXPECT_EQ(once.status, 0) << once.err;
+}
+
 TEST(RenderCommand, RefusesInOneSentence) {
     const ScratchDirectory directory;
     const std::string scene = write_scene(directory, kLamp), out = directory / "a.exr";
@@ -95,6 +124,21 @@ TEST(RenderCommand, RefusesInOneSentence) {
     expect_failure({"render", scene, "-o", directory / "a.txt"}, 2, "a.txt");
     expect_failure({"render", directory / "none.json", "-o", out}, 1, "none.json: does not exist");
     expect_failure({"render", scene, "-o", out, "--max-memory", "1K"}, 1, "--max-memory");
+    expect_failure({"render", scene, "-o", out, "--scattering", "twice"}, 2,
+                   "--scattering: 'twice'");
+    expect_failure({"render", scene, "-o", out, "--bounces", "8"}, 2,
+                   "--bounces: is for --scattering multiple");
+    expect_failure({"render", scene, "-o", out, "--scattering", "multiple", "--bounces", "0"}, 2,
+                   "--bounces");
+    expect_failure({"render", scene, "-o", out, "--scattering", "multiple", "--engine", "fast"}, 2,
+                   "--scattering multiple: is for --engine reference");
+    expect_failure({"render", scene, "-o", out, "--scattering", "multiple", "--without", "shafts"},
+                   2, "--scattering multiple: takes no --all, --only or --without");
+    write_bytes(scene, R"({"airlight_scene": 1, "media": [
+        {"type": "slab", "min": [0, 0, 0], "max": [1, 1, 1], "scattering": 1}]})");
+    expect_failure({"render", scene, "-o", out, "--scattering", "multiple"}, 2,
+                   "a.json: --scattering multiple does not follow light through slabs; leave them "
+                   "out or use single");
     write_bytes(scene, R"({"airlight_scene": 1, "media": [
         {"type": "slab", "min": [0, 0, 0], "max": [1, 1, 1], "scattering": 1},
         {"type": "slab", "min": [0, 0.9, 0], "max": [1, 2, 1], "scattering": 1}]})");
