@@ -35,36 +35,6 @@ SurfaceMaterial planned(SurfaceMaterial material, const ObjectPlan& plan, bool e
     return material;
 }
 
-struct Collision {
-    double t, pdf;
-};
-
-// Where on a ray: with the density of the first collision, were the depth between marks spread
-// evenly; what that misses is weighed.
-template <class Depth>
-Collision first_collision(const std::vector<double>& marks, const Depth& depth_to, double xi) {
-    const double last = marks.back();
-    const double all = -std::expm1(-depth_to(last));
-    if (!(all > 0)) return {xi * last, 1 / last};
-    double before = 0, gone = 0;
-    for (std::size_t i = 1;; ++i) {
-        const double depth = i + 1 < marks.size() ? depth_to(marks[i]) : depth_to(last);
-        const double share = std::exp(-before) * -std::expm1(before - depth);
-        if (i + 1 < marks.size() && !(xi * all < gone + share)) {
-            gone += share;
-            before = depth;
-            continue;
-        }
-        const double width = marks[i] - marks[i - 1];
-        if (!(share > 0)) return {marks[i], kInfinite};
-        const double left = std::clamp((xi * all - gone) / share, 0.0, 1.0);
-        const double rate = (depth - before) / width;
-        const double far = std::log1p(left * std::expm1(before - depth));
-        const double t = marks[i - 1] + std::min(width, -far / rate);
-        return {t, std::exp(-before + far) * rate / all};
-    }
-}
-
 }  // namespace
 
 ReferenceCounts& ReferenceCounts::operator+=(const ReferenceCounts& other) {
@@ -102,42 +72,6 @@ bool ReferenceRenderer::sees_map(const glm::dvec3& from, const glm::dvec3& direc
                                  ReferenceCounts& counts) const {
     ++counts.rays;
     return !world_.trace(from, direction, kInfinite);
-}
-
-glm::dvec3 ReferenceRenderer::airlight_of_map(const RayPiece& piece, SampleStream& stream,
-                                              ReferenceCounts& counts) const {
-    const SceneMedia& media = world_.media();
-    const EnvironmentSampler* const sampler = world_.sampler();
-    if ((!plan_.everything && media.empty() && !piece.slab) || !sampler ||
-        !std::isfinite(piece.distance)) {
-        return glm::dvec3(0);
-    }
-    const double xi = stream.next(), choice_x = stream.next(), choice_y = stream.next();
-    const auto depth_to = [&](double t) {
-        const glm::dvec3 depth = media.depth(piece.origin, piece.direction, t);
-        return piece.slab ? depth + piece.slab->extinction * t : depth;
-    };
-    const auto [t, pdf] = first_collision(
-        media.marks(piece.origin, piece.direction, piece.distance),
-        [&](double end) { return largest(depth_to(end)); }, xi);
-    const glm::dvec3 x = piece.origin + t * piece.direction;
-    const EnvironmentSample light = sampler->sample(choice_x, choice_y);
-    if (!(light.pdf > 0 && pdf > 0)) return glm::dvec3(0);
-    ++counts.line_points;
-    const glm::dvec3 sent = transmittance_of(depth_to(t)) * light.radiance / (light.pdf * pdf);
-    if (piece.slab) {
-        glm::dvec3 sum(0);
-        for (const SlabArrival& way : arrivals_of_direction(*piece.slab, x, light.direction)) {
-            sum += sent_in_slab(*piece.slab, x, -way.to_light, -piece.direction) *
-                   map_in_slab(*piece.slab, x, way, light.direction, options_.shadows_in_media,
-                               counts);
-        }
-        return sent * sum;
-    }
-    if (options_.shadows_in_media && !sees_map(x, light.direction, counts)) return glm::dvec3(0);
-    return sent * scattered(x, -light.direction, -piece.direction) *
-           transmittance_of(
-               straight_depth(x, light.direction, world_.scene().environment->distance, counts));
 }
 
 glm::dvec3 ReferenceRenderer::surface_of_map(const WorldHit& hit, const glm::dvec3& to_viewer,
@@ -205,14 +139,8 @@ void ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::dvec3& 
         light[RadianceLayer::surface_point] += weight * (sent.gaussians + sent.others);
     }
     if (!world_.sampler() || !plan_.runs(Effect::surface_environment)) return;
-    SampleStream of_map = stream.of(kMapByMedia);
-    const LobeSample lobe = sample_lobe(material, hit.normal, to_viewer, of_map);
-    const glm::dvec3 f = reflect(material, hit.normal, to_viewer, lobe.direction);
-    if (lobe.pdf > 0 && largest(f) > 0 && glm::dot(lobe.direction, hit.face) > 0) {
-        ++counts.surface_lights;
-        light[RadianceLayer::surface_environment] +=
-            f * map_along(path_to(lobe.direction), of_map, counts) / lobe.pdf;
-    }
+    light[RadianceLayer::surface_environment] +=
+        surface_of_scattered_map(hit, to_viewer, from, stream.of(kMapByMedia), counts);
 }
 
 void ReferenceRenderer::surface(const WorldHit& hit, const glm::dvec3& to_viewer,

@@ -8,12 +8,22 @@
 // sends L_d: the light of lights and map that reaches it through the media and past the objects,
 // and the light that the media scatter onto it once; light is not passed on between surfaces.
 //
+// What the map is: to media that are the same everywhere its directions w are point lights of the
+// intensity L D^2 d omega at o + D w, with D the map's distance and o where the ray begins, at the
+// camera or a surface. A ray that meets no object gathers them to infinity, so that before the map
+// L = e^{-T} L_map + albedo int PSF_T L_map d omega with T = sigma_t D, what envmap/fog.h writes
+// ([Sun05] sec. 6.1, [Zhou07] eq. 26). To other media, which end or thin out, its light comes
+// everywhere from w itself, dimmed by all media along D; rays gather it along D. Where both are,
+// each does it its way.
+//
 // What is deterministic: light of point lights on surfaces and in the media along rays, between the
 // exact borders of the shadows there; in closed form where all media are the same everywhere, else
 // by adaptive quadrature in the angle at which the light sees the ray, which takes its 1/d^2 away.
-// What is sampled: the map on surfaces (its bright pixels and the surface's lobe, weighed against
-// each other) and in media, and what media scatter onto surfaces (around the direction of each
-// light, where that light is 1/sin).
+// What is sampled: directions of the map, on surfaces by its bright pixels and the surface's lobe,
+// weighed against each other, in media by its bright pixels and around the ray; the place on the
+// ray, unless nothing shades media that are the same everywhere, where it is a closed form; and
+// what media scatter onto surfaces (around the direction of each light or of the map, where that
+// light is 1/sin).
 //
 // Slabs: rays of view refract at their surfaces, light that reaches a point within does so through
 // each face, both by Snell's law with the transmittance of Fresnel, and the light's beam spreads as
@@ -48,6 +58,8 @@
 #include "viewer/world.h"
 
 namespace airlight {
+
+struct EnvironmentSample;
 
 /// How the light of lamps that media scatter is summed along a ray.
 enum class RayAirlight {
@@ -127,9 +139,11 @@ class ReferenceRenderer {
     glm::dvec3 airlight_of_uniform(const PointLight& light, double foot, double height,
                                    const std::vector<RayInterval>& lit) const;
     glm::dvec3 scattered(const glm::dvec3& x, const glm::dvec3& incoming,
-                         const glm::dvec3& outgoing) const;
-    glm::dvec3 airlight_of_map(const RayPiece& piece, SampleStream& stream,
+                         const glm::dvec3& outgoing, MediumExtent extent = MediumExtent::any) const;
+    glm::dvec3 airlight_of_map(const RayPiece& piece, const EnvironmentSample& light, double choice,
                                ReferenceCounts& counts) const;
+    glm::dvec3 airlight_of_direction(const RayPath& path, const glm::dvec3& to_map, double choice,
+                                     ReferenceCounts& counts) const;
     glm::dvec3 map_along(const RayPath& path, SampleStream& stream, ReferenceCounts& counts) const;
     struct LampAirlight {
         glm::dvec3 gaussians{0}, others{0};
@@ -163,6 +177,9 @@ class ReferenceRenderer {
     void surface_of_media(const WorldHit& hit, const glm::dvec3& to_viewer, const glm::dvec3& from,
                           const SampleStream& stream, ReferenceCounts& counts,
                           LayeredRadiance& light) const;
+    glm::dvec3 surface_of_scattered_map(const WorldHit& hit, const glm::dvec3& to_viewer,
+                                        const glm::dvec3& from, SampleStream stream,
+                                        ReferenceCounts& counts) const;
     bool sees(const glm::dvec3& from, const glm::dvec3& to, ReferenceCounts& counts) const;
     bool sees_map(const glm::dvec3& from, const glm::dvec3& direction,
                   ReferenceCounts& counts) const;

@@ -11,10 +11,11 @@
 namespace airlight {
 // sum_m sigma_s,m p_m at a point, for light that travels along `incoming`.
 glm::dvec3 ReferenceRenderer::scattered(const glm::dvec3& x, const glm::dvec3& incoming,
-                                        const glm::dvec3& outgoing) const {
+                                        const glm::dvec3& outgoing, MediumExtent extent) const {
     const double cosine = std::clamp(glm::dot(incoming, outgoing), -1.0, 1.0);
     glm::dvec3 sum(0);
     for (const MediumPart& part : world_.media().parts()) {
+        if (!part.is_of(extent)) continue;
         sum += part.albedo() * part.density(x) * part.phase().at_cosine(cosine);
     }
     return sum;

@@ -121,15 +121,6 @@ ReferenceRenderer::LampAirlight ReferenceRenderer::airlight_along(std::size_t la
     return sum;
 }
 
-glm::dvec3 ReferenceRenderer::map_along(const RayPath& path, SampleStream& stream,
-                                        ReferenceCounts& counts) const {
-    glm::dvec3 sum(0);
-    for (const RayPiece& piece : path.pieces) {
-        sum += piece.throughput * airlight_of_map(piece, stream, counts);
-    }
-    return sum;
-}
-
 glm::dvec3 ReferenceRenderer::map_in_slab(const Slab& slab, const glm::dvec3& x,
                                           const SlabArrival& way, const glm::dvec3& to_map,
                                           bool shadows, ReferenceCounts& counts) const {

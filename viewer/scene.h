@@ -43,8 +43,9 @@ struct EnvironmentLight {
     SceneFile file;
     double rotation = 0;  ///< [rad] about +Y, counter-clockwise seen from above
     double scale = 1;     ///< of its radiance, not negative
-    /// Metres of media between any point of the scene and the map; positive. Media of a finite
-    /// extent, which thin out, hold less.
+    /// Metres from the map to whoever receives its light, the camera or a point of a surface;
+    /// positive. To uniform media without bounds a direction of the map is a point light there
+    /// ([Sun05] sec. 6.1); to others it is infinitely far, and this is how far they dim it.
     double distance = 100;
 };
 

@@ -159,6 +159,10 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
         for (const double step : {-1.5, 0.0, 1.5}) {
             add(pass.m_proj + step / blob.scale, kMarkWidth / blob.scale);
         }
+        if (least > 0) return;
+        for (const double step : {-3.0, 3.0}) {
+            add(pass.m_proj + step / blob.scale, kMarkWidth / blob.scale);
+        }
     };
     if (tree_) {
         for (const std::uint32_t i : tree_->along(origin, direction, distance, 1e-4)) {
@@ -203,16 +207,23 @@ bool SceneMedia::any(bool gaussian) const {
                        [&](const MediumPart& part) { return part.is_gaussian() == gaussian; });
 }
 
+bool SceneMedia::has(MediumExtent extent) const {
+    return std::any_of(parts_.begin(), parts_.end(),
+                       [extent](const MediumPart& part) { return part.is_of(extent); });
+}
+
 glm::dvec3 SceneMedia::density(const glm::dvec3& x) const {
     glm::dvec3 sum(0);
     for (const MediumPart& part : parts_) sum += part.density(x);
     return sum;
 }
 
-glm::dvec3 SceneMedia::depth(const glm::dvec3& origin, const glm::dvec3& direction,
-                             double distance) const {
+glm::dvec3 SceneMedia::depth(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
+                             MediumExtent extent) const {
     glm::dvec3 sum(0);
-    for (const MediumPart& part : parts_) sum += part.depth(origin, direction, distance);
+    for (const MediumPart& part : parts_) {
+        if (part.is_of(extent)) sum += part.depth(origin, direction, distance);
+    }
     return sum;
 }
 

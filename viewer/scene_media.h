@@ -26,6 +26,9 @@ std::optional<RaySpan> clip_to_box(const SceneBox& box, const glm::dvec3& origin
 /// A scene's phase function, read if it is a table.
 PhaseFunction phase_of(const ScenePhase& phase);
 
+/// Which media: those that are the same everywhere, those of some extent or all.
+enum class MediumExtent { any, endless, limited };
+
 /// One medium: extinction density_c(x) [1/m] in channel c, of which the part albedo_c scatters.
 class MediumPart {
   public:
@@ -50,12 +53,18 @@ class MediumPart {
         double at = 0, width = 0;
     };
     /// Adds distances in (0, distance) at which the medium begins or ends along a ray, and those
-    /// around which a Gaussian is dense, unless the depth through it is under `least`.
+    /// around which a Gaussian is dense, unless the depth through it is under `least`; with
+    /// 0 those where it has thinned out, too.
     void mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
               std::vector<Mark>& marks, double least = 0) const;
 
     /// The extinction of a medium that is the same everywhere.
     const std::optional<glm::dvec3>& everywhere() const { return everywhere_; }
+
+    bool is_of(MediumExtent extent) const {
+        return extent == MediumExtent::any ||
+               everywhere_.has_value() == (extent == MediumExtent::endless);
+    }
 
     static constexpr std::size_t kFewBlobs = 32;
     static constexpr double kTreeDepth = 1e-9;
@@ -87,9 +96,12 @@ class SceneMedia {
     bool any(bool gaussian) const;
     /// The extinction of all where each is the same everywhere.
     const std::optional<glm::dvec3>& everywhere() const { return everywhere_; }
+    bool has_endless() const { return has(MediumExtent::endless); }
+    bool has_limited() const { return has(MediumExtent::limited); }
 
     glm::dvec3 density(const glm::dvec3& x) const;
-    glm::dvec3 depth(const glm::dvec3& origin, const glm::dvec3& direction, double distance) const;
+    glm::dvec3 depth(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
+                     MediumExtent extent = MediumExtent::any) const;
     /// e^{-depth}.
     glm::dvec3 transmittance(const glm::dvec3& origin, const glm::dvec3& direction,
                              double distance) const;
@@ -99,6 +111,8 @@ class SceneMedia {
                               double distance, double least = 0) const;
 
   private:
+    bool has(MediumExtent extent) const;
+
     std::vector<MediumPart> parts_;
     std::optional<glm::dvec3> everywhere_;
 };
