@@ -16,6 +16,10 @@
 // scattered light at an optical thickness of 1 from a lamp (seven times that at 7), and one path
 // takes 47 on average where all would take 1024.
 //
+// The map is infinitely far to all media, its light dimmed along its distance; to those without end
+// ReferenceRenderer has it as lights at that distance, so under a map the two agree in media with
+// bounds.
+//
 // Light passes between surfaces, too. Slabs are refused, and particles of shafts are left out.
 //
 // Deviates: [Sun05] sec. 3.3 has media alone and a "standard volumetric Monte Carlo approach".
