@@ -264,7 +264,6 @@ class Planner {
                 const auto effect = static_cast<Effect>(i);
                 if (kInMedia.has(effect) && plan_.runs(effect)) {
                     decide(effect, false, "all that is in the air is under the tolerance");
-                    choice(effect).bound = left_out_ / 2;
                 }
             }
         }
@@ -333,10 +332,7 @@ class Planner {
 
     // Effects of which no lamp is left.
     void update_sums() {
-        const auto none = [&](bool LampPlan::*flag) {
-            return std::none_of(plan_.lights.begin(), plan_.lights.end(),
-                                [&](const LampPlan& lamp) { return lamp.*flag; });
-        };
+        const auto none = [&](bool LampPlan::*flag) { return lamps_with(flag) == 0; };
         if (none(&LampPlan::airlight_point)) gone(Effect::airlight_point);
         if (none(&LampPlan::airlight_gaussians)) gone(Effect::airlight_gaussians);
         if (none(&LampPlan::surface)) gone(Effect::surface_point);
@@ -345,9 +341,7 @@ class Planner {
              {std::pair{&LampPlan::airlight_point, Effect::airlight_point},
               std::pair{&LampPlan::airlight_gaussians, Effect::airlight_gaussians},
               std::pair{&LampPlan::surface, Effect::surface_point}}) {
-            const auto left = static_cast<std::size_t>(
-                std::count_if(plan_.lights.begin(), plan_.lights.end(),
-                              [f = flag](const LampPlan& lamp) { return lamp.*f; }));
+            const std::size_t left = lamps_with(flag);
             if (plan_.runs(effect) && left < plan_.lights.size()) {
                 choice(effect).reason += fmt::format(
                     "; {} of {} matter", left, count_of(plan_.lights.size(), "lamp", "lamps"));
@@ -357,7 +351,7 @@ class Planner {
             choice(Effect::airlight_gaussians).reason +=
                 fmt::format("; {} Gaussians are not noticed", plan_.blobs_left_out);
         }
-        if (plan_.runs(Effect::attenuation)) choice(Effect::attenuation).bound += media_bound_;
+        choice(Effect::attenuation).bound += media_bound_;
     }
 
     void obey_the_user() {
@@ -376,17 +370,20 @@ class Planner {
         for (ObjectPlan& object : plan_.objects) object.glossy &= plan_.runs(Effect::brdf_glossy);
     }
 
+    std::size_t lamps_with(bool LampPlan::*flag) const {
+        return static_cast<std::size_t>(
+            std::count_if(plan_.lights.begin(), plan_.lights.end(),
+                          [&](const LampPlan& lamp) { return lamp.*flag; }));
+    }
+
     void name_methods() {
         // The integrals of all lamps share the error.
-        std::size_t integrals = 0;
-        for (const LampPlan& lamp : plan_.lights) {
-            integrals += (lamp.airlight_point ? 1u : 0u) + (lamp.airlight_gaussians ? 1u : 0u) +
-                         (lamp.surface ? 1u : 0u);
-        }
-        plan_.quadrature = options_.all
-                               ? kFinest
-                               : std::max(kFinest, 0.4 * plan_.tolerance /
-                                                       double(std::max<std::size_t>(1, integrals)));
+        const double integrals =
+            double(lamps_with(&LampPlan::airlight_point) +
+                   lamps_with(&LampPlan::airlight_gaussians) + lamps_with(&LampPlan::surface));
+        plan_.quadrature =
+            options_.all ? kFinest
+                         : std::max(kFinest, 0.4 * plan_.tolerance / std::max(1.0, integrals));
         const bool closed =
             !options_.all && SceneMedia(plan_.media).everywhere() && !plan_.runs(Effect::slab);
         for (std::size_t i = 0; i < kEffectCount; ++i) {
@@ -395,28 +392,29 @@ class Planner {
         }
     }
 
+    void name_integral(EffectChoice& c, bool closed, std::size_t lamps) const {
+        if (closed) {
+            c.rung = "closed form";
+            c.bound += kClosedFormError;
+            return;
+        }
+        c.rung = fmt::format("adaptive quadrature to {:.1g}", plan_.quadrature);
+        c.bound += plan_.quadrature * double(lamps);
+        c.bound_kind = BoundKind::estimated;
+    }
+
     void name_method(Effect effect, bool closed) {
         EffectChoice& c = choice(effect);
-        const std::string adaptive = fmt::format("adaptive quadrature to {:.1g}", plan_.quadrature);
         switch (effect) {
             case Effect::airlight_point:
+                name_integral(c, closed, lamps_with(&LampPlan::airlight_point));
+                break;
             case Effect::airlight_gaussians:
-                c.rung = closed ? "closed form" : adaptive;
-                if (closed) {
-                    c.bound += kClosedFormError;
-                } else {
-                    c.bound += plan_.quadrature * double(plan_.lights.size());
-                    c.bound_kind = BoundKind::estimated;
-                }
+                name_integral(c, closed, lamps_with(&LampPlan::airlight_gaussians));
                 break;
             case Effect::surface_point:
-                c.rung = closed ? "closed form, sampled" : adaptive + ", sampled";
-                if (closed) {
-                    c.bound += kClosedFormError;
-                } else {
-                    c.bound += plan_.quadrature * double(plan_.lights.size());
-                    c.bound_kind = BoundKind::estimated;
-                }
+                name_integral(c, closed, lamps_with(&LampPlan::surface));
+                c.rung += ", sampled";
                 break;
             case Effect::airlight_environment:
             case Effect::surface_environment:

@@ -122,8 +122,8 @@ void ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::dvec3& 
     };
     SampleStream of_lamps = stream.of(kLampsByMedia);
     for (std::size_t lamp = 0; lamp < plan_.lights.size(); ++lamp) {
-        if (!plan_.lights[lamp].surface) continue;
         const double gamma = kPi * of_lamps.next(), azimuth = 2 * kPi * of_lamps.next();
+        if (!plan_.lights[lamp].surface) continue;
         const glm::dvec3 axis = glm::normalize(world_.scene().lights[lamp].position - from);
         glm::dvec3 x, y;
         make_axes(axis, x, y);
