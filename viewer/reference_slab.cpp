@@ -54,7 +54,7 @@ glm::dvec3 ReferenceRenderer::airlight_in_slab(const PointLight& light, const Ra
         std::max(glm::length(light.position - piece.origin - foot * piece.direction),
                  1e-9 * (1 + std::abs(foot)));
     std::vector<double> breaks =
-        world_.media().marks(piece.origin, piece.direction, piece.distance, options_.quadrature);
+        world_.media().marks(piece.origin, piece.direction, piece.distance);
     const double free_path = 1 / largest(slab.extinction);
     for (const double t : {foot, free_path, 4 * free_path}) {
         if (t > 0 && t < piece.distance) breaks.push_back(t);

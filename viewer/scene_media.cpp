@@ -12,7 +12,7 @@ namespace airlight {
 namespace {
 
 // In units of a Gaussian's 1 / scale: rules of 15 nodes between marks 2 apart see all of it.
-constexpr double kMarkWidth = 0.6;
+constexpr double kMarkWidth = 0.9;
 
 struct PartBuilder {
     std::vector<DensityField>& shapes;
@@ -140,7 +140,7 @@ glm::dvec3 MediumPart::depth(const glm::dvec3& origin, const glm::dvec3& directi
 }
 
 void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-                      std::vector<Mark>& marks, double least) const {
+                      std::vector<Mark>& marks) const {
     const auto add = [&](double at, double width = 0) {
         if (at > 0 && at < distance) marks.push_back({at, width});
     };
@@ -152,20 +152,15 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
     }
     const auto mark_blob = [&](const GaussianBlob& blob) {
         const GaussianPass pass = gaussian_pass(blob.center, origin, direction);
-        // Beyond, it is no more than e^-9 of itself.
+        // Beyond, it is no more than e^-36 of itself.
         const double off = blob.scale * pass.rho_perp;
-        if (!(off < 3)) return;
-        if (blob.amplitude * std::sqrt(kPi) * std::exp(-off * off) < least * blob.scale) return;
-        for (const double step : {-1.5, 0.0, 1.5}) {
-            add(pass.m_proj + step / blob.scale, kMarkWidth / blob.scale);
-        }
-        if (least > 0) return;
-        for (const double step : {-3.0, 3.0}) {
+        if (!(off < 6)) return;
+        for (const double step : {-3.0, -1.0, 1.0, 3.0}) {
             add(pass.m_proj + step / blob.scale, kMarkWidth / blob.scale);
         }
     };
     if (tree_) {
-        for (const std::uint32_t i : tree_->along(origin, direction, distance, 1e-4)) {
+        for (const std::uint32_t i : tree_->along(origin, direction, distance, 1e-7)) {
             mark_blob(tree_->blobs()[i]);
         }
     } else if (shapes_.size() == 1) {
@@ -233,9 +228,9 @@ glm::dvec3 SceneMedia::transmittance(const glm::dvec3& origin, const glm::dvec3&
 }
 
 std::vector<double> SceneMedia::marks(const glm::dvec3& origin, const glm::dvec3& direction,
-                                      double distance, double least) const {
+                                      double distance) const {
     std::vector<MediumPart::Mark> all;
-    for (const MediumPart& part : parts_) part.mark(origin, direction, distance, all, least);
+    for (const MediumPart& part : parts_) part.mark(origin, direction, distance, all);
     std::sort(all.begin(), all.end(), [](const MediumPart::Mark& a, const MediumPart::Mark& b) {
         return a.at != b.at ? a.at < b.at : a.width < b.width;
     });

@@ -53,10 +53,9 @@ class MediumPart {
         double at = 0, width = 0;
     };
     /// Adds distances in (0, distance) at which the medium begins or ends along a ray, and those
-    /// around which a Gaussian is dense, unless the depth through it is under `least`; with
-    /// 0 those where it has thinned out, too.
+    /// around which a Gaussian is dense.
     void mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-              std::vector<Mark>& marks, double least = 0) const;
+              std::vector<Mark>& marks) const;
 
     /// The extinction of a medium that is the same everywhere.
     const std::optional<glm::dvec3>& everywhere() const { return everywhere_; }
@@ -108,7 +107,7 @@ class SceneMedia {
 
     /// 0, the marks of all media and `distance`, ascending, thinned out where they crowd.
     std::vector<double> marks(const glm::dvec3& origin, const glm::dvec3& direction,
-                              double distance, double least = 0) const;
+                              double distance) const;
 
   private:
     bool has(MediumExtent extent) const;

@@ -136,12 +136,16 @@ double ViewCone::distance_to_hull(const glm::dvec3& point,
                                   const std::vector<glm::dvec3>& others) const {
     if (half_angle_ >= 0.5 * kPi) return 0;
     const glm::dvec3 to = point - origin_;
-    const double along = glm::dot(to, axis_);
-    const glm::dvec3 across = to - along * axis_;
-    const double off = glm::length(across);
-    if (!(off > 0)) return 0;
-    // The normal of the cone's side next to the point: no direction in the cone is above it.
-    const glm::dvec3 normal = std::cos(half_angle_) * across / off - std::sin(half_angle_) * axis_;
+    // A direction that no ray of view goes along: away from the cone's side next to the point, or
+    // from its tip.
+    glm::dvec3 normal;
+    if (angle_to(point) >= 0.5 * kPi) {
+        normal = glm::normalize(to);
+    } else {
+        const glm::dvec3 across = to - glm::dot(to, axis_) * axis_;
+        if (!(glm::length(across) > 0)) return 0;
+        normal = std::cos(half_angle_) * glm::normalize(across) - std::sin(half_angle_) * axis_;
+    }
     double highest = 0;
     for (const glm::dvec3& other : others) {
         highest = std::max(highest, glm::dot(normal, other - origin_));
