@@ -12,7 +12,8 @@ namespace airlight {
 namespace {
 
 // In units of a Gaussian's 1 / scale: rules of 15 nodes between marks 2 apart see all of it.
-constexpr double kMarkWidth = 0.9;
+constexpr double kMarkSteps[] = {-3, -1, 1, 3}, kMarkWidth = 0.9;
+constexpr double kDenseRadius = 6;  // beyond, it is under e^-36 of itself
 
 struct PartBuilder {
     std::vector<DensityField>& shapes;
@@ -152,10 +153,9 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
     }
     const auto mark_blob = [&](const GaussianBlob& blob) {
         const GaussianPass pass = gaussian_pass(blob.center, origin, direction);
-        // Beyond, it is no more than e^-36 of itself.
         const double off = blob.scale * pass.rho_perp;
-        if (!(off < 6)) return;
-        for (const double step : {-3.0, -1.0, 1.0, 3.0}) {
+        if (!(off < kDenseRadius)) return;
+        for (const double step : kMarkSteps) {
             add(pass.m_proj + step / blob.scale, kMarkWidth / blob.scale);
         }
     };
@@ -180,6 +180,43 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
                 add(deepest + step);
             }
         }
+    }
+}
+
+// In the plane of ray and lamp, x along the ray from its point next to the lamp and y towards the
+// lamp, which is at (0, h): what is at (x, y) shades the ray at x h / (h - y).
+void MediumPart::mark_shadows(const glm::dvec3& lamp, const glm::dvec3& origin,
+                              const glm::dvec3& direction, double distance,
+                              std::vector<Mark>& marks) const {
+    if (!gaussian_) return;
+    const double foot = glm::dot(lamp - origin, direction);
+    const glm::dvec3 across = lamp - origin - foot * direction;
+    const double height = glm::length(across);
+    if (!(height > 0)) return;
+    const glm::dvec3 up = across / height, normal = glm::cross(direction, up);
+    const auto mark_blob = [&](const GaussianBlob& blob) {
+        const glm::dvec3 to = blob.center - origin;
+        if (!(blob.scale * std::abs(glm::dot(normal, to)) < kDenseRadius)) return;
+        const double below = height - glm::dot(up, to);
+        if (!(below > 0 && below < height + kDenseRadius / blob.scale)) return;
+        const double stretch = height / below;
+        const double at = foot + (glm::dot(direction, to) - foot) * stretch;
+        for (const double step : kMarkSteps) {
+            const double t = at + step * stretch / blob.scale;
+            if (t > 0 && t < distance) marks.push_back({t, kMarkWidth * stretch / blob.scale});
+        }
+    };
+    if (tree_) {
+        AirlightRay ray;
+        ray.viewer = origin;
+        ray.light = lamp;
+        ray.direction = direction;
+        ray.dist = distance;
+        for (const std::uint32_t i : tree_->around(ray, 1e-7)) mark_blob(tree_->blobs()[i]);
+        return;
+    }
+    for (const Density& density : shapes_[0].parts) {
+        if (const auto* blob = std::get_if<GaussianBlob>(&density)) mark_blob(*blob);
     }
 }
 
@@ -228,9 +265,12 @@ glm::dvec3 SceneMedia::transmittance(const glm::dvec3& origin, const glm::dvec3&
 }
 
 std::vector<double> SceneMedia::marks(const glm::dvec3& origin, const glm::dvec3& direction,
-                                      double distance) const {
+                                      double distance, const glm::dvec3* lamp) const {
     std::vector<MediumPart::Mark> all;
-    for (const MediumPart& part : parts_) part.mark(origin, direction, distance, all);
+    for (const MediumPart& part : parts_) {
+        part.mark(origin, direction, distance, all);
+        if (lamp) part.mark_shadows(*lamp, origin, direction, distance, all);
+    }
     std::sort(all.begin(), all.end(), [](const MediumPart::Mark& a, const MediumPart::Mark& b) {
         return a.at != b.at ? a.at < b.at : a.width < b.width;
     });

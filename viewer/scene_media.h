@@ -56,6 +56,9 @@ class MediumPart {
     /// around which a Gaussian is dense.
     void mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
               std::vector<Mark>& marks) const;
+    /// Adds those to which light of a lamp comes through a dense Gaussian.
+    void mark_shadows(const glm::dvec3& lamp, const glm::dvec3& origin, const glm::dvec3& direction,
+                      double distance, std::vector<Mark>& marks) const;
 
     /// The extinction of a medium that is the same everywhere.
     const std::optional<glm::dvec3>& everywhere() const { return everywhere_; }
@@ -106,8 +109,9 @@ class SceneMedia {
                              double distance) const;
 
     /// 0, the marks of all media and `distance`, ascending, thinned out where they crowd.
+    /// With those of shadows in the light of `lamp`, unless it is null.
     std::vector<double> marks(const glm::dvec3& origin, const glm::dvec3& direction,
-                              double distance) const;
+                              double distance, const glm::dvec3* lamp = nullptr) const;
 
   private:
     bool has(MediumExtent extent) const;

@@ -104,6 +104,33 @@ TEST_F(ReferenceTest, AirlightOfUniformFogIsTheClosedForm) {
     }
 }
 
+// Narrow places of the ray to which the lamp shines through a blob.
+TEST_F(ReferenceTest, ShadowsOfGaussiansAreFound) {
+    Scene scene;
+    scene.lights = {{{-20, -10.6, 16.7}, glm::dvec3(1)}};
+    scene.media = {uniform(0.0012, 0), gaussians({{{-9.2, -9, -0.1}, 0.42, 0.037},
+                                                  {{-3.1, -31.3, -17.8}, 0.88, 0.234},
+                                                  {{17.6, 38.9, 0.5}, 2.9, 0.227}})};
+    const World world(scene);
+    ReferenceOptions coarse, fine;
+    coarse.quadrature = 2e-4;
+    fine.quadrature = 1e-9;
+    std::mt19937 random(5);
+    std::normal_distribution<> normal;
+    for (int i = 0; i < 2000; ++i) {
+        const glm::dvec3 direction =
+            glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+        const glm::dvec3 origin(-0.8, 0.2, 1);
+        const double found = ReferenceRenderer(world, coarse)
+                                 .airlight_of_lights(origin, direction, kInfinite, counts_)
+                                 .x;
+        const double exact = ReferenceRenderer(world, fine)
+                                 .airlight_of_lights(origin, direction, kInfinite, counts_)
+                                 .x;
+        EXPECT_NEAR(found, exact, 2e-4 * exact);
+    }
+}
+
 TEST_F(ReferenceTest, AnAtmosphereIsFoundHoweverFarTheLampIs) {
     Scene scene;
     SceneMedium air;
