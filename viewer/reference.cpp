@@ -135,7 +135,7 @@ void ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::dvec3& 
         ++counts.surface_lights;
         const glm::dvec3 weight = f * (2 * kPi * kPi * std::sin(gamma));
         const double absolute = options_.quadrature * largest(light.total()) / largest(weight);
-        const LampAirlight sent = airlight_along(lamp, path_to(direction), absolute, counts);
+        const LampAirlight sent = airlight_along(lamp, {}, path_to(direction), absolute, counts);
         light[RadianceLayer::surface_point] += weight * (sent.gaussians + sent.others);
     }
     if (!world_.sampler() || !plan_.runs(Effect::surface_environment)) return;
@@ -191,8 +191,10 @@ LayeredRadiance ReferenceRenderer::layers(const glm::dvec3& origin, const glm::d
         light[RadianceLayer::airlight_environment] = map_along(path, of_map, counts);
     }
     for (std::size_t lamp = 0; lamp < plan_.lights.size(); ++lamp) {
+        const LampUse use = {plan_.lights[lamp].airlight_gaussians,
+                             plan_.lights[lamp].airlight_point};
         const LampAirlight sent =
-            airlight_along(lamp, path, options_.quadrature * largest(light.total()), counts);
+            airlight_along(lamp, use, path, options_.quadrature * largest(light.total()), counts);
         light[RadianceLayer::airlight_point] += sent.others;
         light[RadianceLayer::airlight_gaussians] += sent.gaussians;
     }

@@ -148,8 +148,11 @@ class ReferenceRenderer {
     struct LampAirlight {
         glm::dvec3 gaussians{0}, others{0};
     };
-    LampAirlight airlight_along(std::size_t lamp, const RayPath& path, double absolute,
-                                ReferenceCounts& counts) const;
+    struct LampUse {
+        bool gaussians = true, others = true;
+    };
+    LampAirlight airlight_along(std::size_t lamp, const LampUse& use, const RayPath& path,
+                                double absolute, ReferenceCounts& counts) const;
     bool in_media() const;
     glm::dvec3 particles_along(const RayPiece& piece, ReferenceCounts& counts) const;
     glm::dvec3 straight_depth(const glm::dvec3& x, const glm::dvec3& direction, double distance,

@@ -127,7 +127,7 @@ glm::dvec3 ReferenceRenderer::airlight_of_lights(const glm::dvec3& origin,
     path.pieces.push_back({origin, direction, distance, nullptr, glm::dvec3(1)});
     for (std::size_t lamp = 0; lamp < world_.scene().lights.size(); ++lamp) {
         const LampAirlight light = airlight_along(
-            lamp, path, std::max(absolute, options_.quadrature * largest(sum)), counts);
+            lamp, {}, path, std::max(absolute, options_.quadrature * largest(sum)), counts);
         sum += light.gaussians + light.others;
     }
     return sum;

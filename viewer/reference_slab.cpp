@@ -85,13 +85,12 @@ glm::dvec3 ReferenceRenderer::airlight_in_slab(const PointLight& light, const Ra
 }
 
 ReferenceRenderer::LampAirlight ReferenceRenderer::airlight_along(std::size_t lamp,
+                                                                  const LampUse& use,
                                                                   const RayPath& path,
                                                                   double absolute,
                                                                   ReferenceCounts& counts) const {
-    const LampPlan& plan = plan_.lights[lamp];
-    const bool gaussians =
-        plan.airlight_gaussians && (plan_.everything || world_.media().any(true));
-    const bool others = plan.airlight_point && (plan_.everything || world_.media().any(false));
+    const bool gaussians = use.gaussians && (plan_.everything || world_.media().any(true));
+    const bool others = use.others && (plan_.everything || world_.media().any(false));
     LampAirlight sum;
     for (const RayPiece& piece : path.pieces) {
         const double most = largest(piece.throughput);
@@ -101,7 +100,7 @@ ReferenceRenderer::LampAirlight ReferenceRenderer::airlight_along(std::size_t la
             return std::max(absolute, options_.quadrature * so_far) / most;
         };
         if (piece.slab) {
-            if (plan.airlight_point) {
+            if (use.others) {
                 sum.others += piece.throughput * airlight_in_slab(world_.scene().lights[lamp],
                                                                   piece, enough(), counts);
             }
