@@ -6,11 +6,16 @@
 #include <limits>
 
 #include "prt/ray_packets.h"
+#include "viewer/medium_depths.h"
 
 namespace airlight {
 
 FastRenderer::FastRenderer(const World& world, const Plan& plan, const FastMethods& methods)
-    : world_(world), plan_(plan), methods_(methods), lamps_(world_, plan_, methods_, built_) {}
+    : world_(world),
+      plan_(plan),
+      methods_(methods),
+      lamps_(world_, plan_, methods_, built_),
+      map_(world_, plan_, methods_, built_) {}
 
 void FastRenderer::trace(FastBlock& block, FastCounts& counts) const {
     const auto& environment = world_.scene().environment;
@@ -32,6 +37,7 @@ void FastRenderer::trace(FastBlock& block, FastCounts& counts) const {
                              found.data());
     }
     block.hits.clear();
+    MediumDepths depths(world_.media());
     const bool attenuates = plan_.runs(Effect::attenuation) && !world_.media().empty();
     for (std::size_t i = 0; i < count; ++i) {
         FastRay& ray = block.rays[i];
@@ -56,12 +62,9 @@ void FastRenderer::trace(FastBlock& block, FastCounts& counts) const {
 
 void FastRenderer::shade_block(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const {
     trace(block, counts);
-    for (std::size_t i = 0; i < block.rays.size(); ++i) {
-        const FastRay& ray = block.rays[i];
-        if (!ray.meets && !ray.slow) {
-            out[i][RadianceLayer::direct] = ray.transmittance * world_.environment(ray.direction);
-        }
-    }
+    map_.show(block, out);
+    map_.light_surfaces(block, out, counts);
+    map_.light_media(block, out, counts);
     lamps_.light_surfaces(block, out, counts);
     lamps_.light_media(block, out, counts);
 }

@@ -16,6 +16,7 @@
 
 #include "viewer/fast_block.h"
 #include "viewer/fast_lamps.h"
+#include "viewer/fast_map.h"
 #include "viewer/fast_methods.h"
 #include "viewer/plan.h"
 
@@ -47,6 +48,7 @@ class FastRenderer {
     FastMethods methods_;
     FastCounts built_;
     FastLamps lamps_;
+    FastMap map_;
 };
 
 }  // namespace airlight

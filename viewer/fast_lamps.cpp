@@ -8,6 +8,7 @@
 #include "core/constants.h"
 #include "prt/ray_packets.h"
 #include "viewer/material.h"
+#include "viewer/surface_lobes.h"
 
 namespace airlight {
 namespace {
@@ -50,9 +51,9 @@ FastLamps::FastLamps(const World& world, const Plan& plan, const FastMethods& me
         lobes_.push_back(std::make_unique<SurfaceBatchTable>(1, kLobeTable));
         for (std::size_t i = 0; i < scene.objects.size(); ++i) {
             lobe_of_object_.push_back(0);
-            const auto* phong = std::get_if<PhongMaterial>(&world.material(i).kind);
-            if (!phong || !plan.objects[i].glossy) continue;
-            const double exponent = clamped_exponent(phong->exponent);
+            materials_.push_back(lobes_of(world.material(i)));
+            if (!materials_[i].glossy() || !plan.objects[i].glossy) continue;
+            const double exponent = clamped_exponent(materials_[i].exponent);
             for (std::size_t k = 0; k < lobes_.size(); ++k) {
                 if (lobes_[k]->exponent() == exponent) lobe_of_object_[i] = k;
             }
@@ -163,14 +164,11 @@ void FastLamps::add_scattered(std::size_t lamp, FastBlock& block,
         for (std::uint32_t k = 0; k < arrivals.size(); ++k) {
             const Arrival& arrival = arrivals[k];
             const FastRay& ray = block.rays[arrival.ray];
-            const Material& material = world_.material(ray.hit.object).kind;
-            const auto* phong = std::get_if<PhongMaterial>(&material);
-            const auto* lambert = std::get_if<LambertMaterial>(&material);
+            const SurfaceLobes& lobes = materials_[ray.hit.object];
             glm::dvec3 reflectance(0), axis = ray.hit.normal;
-            if (lobe == 0 && lambert) reflectance = lambert->diffuse / kPi;
-            if (lobe == 0 && phong) reflectance = phong->diffuse / kPi;
-            if (lobe > 0 && phong && lobe_of_object_[ray.hit.object] == lobe) {
-                reflectance = (n + 1) / (2 * kPi) * phong->specular;
+            if (lobe == 0) reflectance = lobes.diffuse / kPi;
+            if (lobe > 0 && lobe_of_object_[ray.hit.object] == lobe) {
+                reflectance = (n + 1) / (2 * kPi) * lobes.specular;
                 axis = ray.direction - 2 * glm::dot(ray.hit.normal, ray.direction) * ray.hit.normal;
             }
             if (!(largest(reflectance) > 0)) continue;

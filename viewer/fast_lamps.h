@@ -10,6 +10,7 @@
 #include "viewer/fast_methods.h"
 #include "viewer/lamp_shadow_map.h"
 #include "viewer/plan.h"
+#include "viewer/surface_lobes.h"
 
 namespace airlight {
 
@@ -43,6 +44,7 @@ class FastLamps {
     const Plan& plan_;
     const FastMethods& methods_;
     std::vector<std::unique_ptr<SurfaceBatchTable>> lobes_;  ///< G_n; [0] is Lambert's
+    std::vector<SurfaceLobes> materials_;                    ///< by object
     std::vector<std::size_t> lobe_of_object_;                ///< of its glossy part
     std::vector<LampShadowMap> shadow_maps_;                 ///< by lamp; empty unless asked for
     bool uniform_ = false;                                   ///< all media are the same everywhere

@@ -44,10 +44,30 @@ inline constexpr NamedMethod<FastSurfacePoint> kFastSurfacePoints[] = {
     {FastSurfacePoint::gn_table, "gn-table"},
 };
 
+/// Light of the map that media send along rays. Media that are the same everywhere have tables;
+/// these are for others: points along the ray.
+enum class FastMapAirlight { march4, march8, march16, march32 };
+inline constexpr NamedMethod<FastMapAirlight> kFastMapAirlights[] = {
+    {FastMapAirlight::march4, "march4"},
+    {FastMapAirlight::march8, "march8"},
+    {FastMapAirlight::march16, "march16"},
+    {FastMapAirlight::march32, "march32"},
+};
+
+/// The order of the map's light on surfaces, where the lobe does not end before.
+enum class FastSurfaceMap { order3, order4, order6, order8, order32 };
+inline constexpr NamedMethod<FastSurfaceMap> kFastSurfaceMaps[] = {
+    {FastSurfaceMap::order3, "order3"},   {FastSurfaceMap::order4, "order4"},
+    {FastSurfaceMap::order6, "order6"},   {FastSurfaceMap::order8, "order8"},
+    {FastSurfaceMap::order32, "order32"},
+};
+
 struct FastMethods {
     FastAirlight airlight = FastAirlight::angle_gl32;
     FastShafts shafts = FastShafts::intervals;
     FastSurfacePoint surface_point = FastSurfacePoint::gn_table;
+    FastMapAirlight map_airlight = FastMapAirlight::march32;
+    FastSurfaceMap surface_map = FastSurfaceMap::order32;
 };
 
 }  // namespace airlight

@@ -50,7 +50,7 @@ Plan plan_of_everything(const World& world) {
     set(Effect::density_height, height);
     set(Effect::density_atmosphere, atmosphere);
     set(Effect::slab, slab);
-    set(Effect::shafts, media && lamps && objects);
+    set(Effect::shafts, media && (lamps || map) && objects);
     set(Effect::particles, scene.shafts.has_value() && media && lamps);
     set(Effect::noise, false);
     return plan;

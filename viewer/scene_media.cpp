@@ -97,7 +97,10 @@ std::optional<RaySpan> clip_to_box(const SceneBox& box, const glm::dvec3& origin
 MediumPart::MediumPart(const SceneMedium& medium)
     : phase_(phase_of(medium.phase)), bounds_(medium.bounds) {
     std::visit(PartBuilder{shapes_, tree_, colour_, albedo_}, medium.kind);
-    gaussian_ = std::holds_alternative<SceneGaussians>(medium.kind);
+    if (const auto* gaussians = std::get_if<SceneGaussians>(&medium.kind)) {
+        gaussian_ = true;
+        blobs_ = gaussians->blobs;
+    }
     if (!bounds_ && std::holds_alternative<SceneUniform>(medium.kind)) everywhere_ = colour_;
 }
 

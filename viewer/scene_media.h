@@ -39,6 +39,8 @@ class MediumPart {
     const PhaseFunction& phase() const { return phase_; }
     const std::optional<SceneBox>& bounds() const { return bounds_; }
     bool is_gaussian() const { return gaussian_; }
+    /// Of Gaussians, else none.
+    const std::vector<GaussianBlob>& blobs() const { return blobs_; }
 
     /// Extinction [1/m] at a point; 0 outside the bounds.
     glm::dvec3 density(const glm::dvec3& x) const;
@@ -84,6 +86,7 @@ class MediumPart {
     std::optional<SceneBox> bounds_;
     std::optional<glm::dvec3> everywhere_;
     bool gaussian_ = false;
+    std::vector<GaussianBlob> blobs_;
 };
 
 /// All media but slabs; what they do adds up.

@@ -52,6 +52,13 @@ class FastTest : public testing::Test {
         scene.objects.push_back(object);
     }
 
+    void add_sky(Scene& scene, const Image& map, double distance) const {
+        write_image(directory_ / "sky.exr", map);
+        scene.environment = EnvironmentLight{};
+        scene.environment->file = file("sky.exr");
+        scene.environment->distance = distance;
+    }
+
     Scene lamp_in_fog() const {
         Scene scene;
         scene.camera.position = {0.5, 1.5, 6};
@@ -173,6 +180,87 @@ TEST_F(FastTest, FogLightsAFloorAsItsSamplesSay) {
         const FastPicture without = render_fast(world, plan, {}, {});
         EXPECT_LT(mean_of(without.image), 0.98 * mean_of(both.fast.image));
     }
+}
+
+/// A map of one radiance, but for a lamp if asked.
+Image sky(float radiance, bool lamp) {
+    Image map(32, 16, 3);
+    std::fill(map.pixels.begin(), map.pixels.end(), radiance);
+    for (int c = 0; c < 3 && lamp; ++c) map.at(5, 20, c) = 30 * radiance;
+    return map;
+}
+
+// The background is the map and what `airlight fog` adds to it, to that one's tolerance of 1e-3
+// between pixels' centres as at them, for a map that changes by less than that between pixels.
+TEST_F(FastTest, BackgroundInFogIsTheFoggyMap) {
+    Scene scene;
+    scene.camera.width = 24;
+    scene.camera.height = 18;
+    scene.media = {uniform({0.05, 0.02, 0.1}, {0.01, 0, 0})};
+    add_sky(scene, sky(3, false), 12);
+    const World world(scene);
+    const Both both(world, plan_of_everything(world), {}, 256);
+    EXPECT_NEAR(both.mean, 1, 2e-3);
+    Scene still = scene;
+    still.media.clear();
+    const World clear(still);
+    const FastPicture picture = render_fast(clear, plan_of_everything(clear), {}, {});
+    EXPECT_FLOAT_EQ(picture.image.pixels[0], 3);
+}
+
+// A convex object in an even light sends on its albedo times that light, by either part of its
+// material: the lobe's part below the horizon is under 1e-2 but beside the silhouette.
+TEST_F(FastTest, AnEvenSkyLightsABallWithItsAlbedo) {
+    Scene scene;
+    scene.camera = {{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 0.2, 16, 12};
+    add_sky(scene, sky(2, false), 10);
+    add_ball(scene, {0, 0, 0}, PhongMaterial{glm::dvec3(0.3), glm::dvec3(0.4), 20});
+    const World world(scene);
+    const FastPicture picture = render_fast(world, plan_of_everything(world), {}, {});
+    for (const float value : picture.image.pixels) EXPECT_NEAR(value, 1.4, 1e-3);
+    EXPECT_GT(picture.counts[Effect::surface_environment], 0u);
+    EXPECT_EQ(picture.counts[Effect::airlight_environment], 0u);
+}
+
+// Light of a lamp in the map, on a ball and past it, in fog; the fast engine shades no fog and no
+// surface, which is a few per cent.
+TEST_F(FastTest, FogAndAMapLightABallAsTheReferenceSays) {
+    Scene scene;
+    scene.camera = {{0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 0.5, 16, 12};
+    scene.media = {uniform(glm::dvec3(0.08), glm::dvec3(0.02))};
+    add_sky(scene, sky(1, true), 9);
+    add_ball(scene, {0, 0, 0}, LambertMaterial{});
+    const World world(scene);
+    const Plan plan = plan_of_everything(world);
+    const Both both(world, plan, {}, 256);
+    EXPECT_NEAR(both.mean, 1, 0.03);
+    for (const Effect effect : {Effect::airlight_environment, Effect::surface_environment}) {
+        Plan less = plan;
+        less[effect].runs = false;
+        const FastPicture picture = render_fast(world, less, {}, {});
+        EXPECT_EQ(picture.counts[effect], 0u);
+        EXPECT_LT(mean_of(picture.image), 0.95 * mean_of(both.fast.image));
+    }
+}
+
+// Gaussians before an even sky, by points along the ray against samples.
+TEST_F(FastTest, GaussiansBeforeAMapAreTheReferences) {
+    Scene scene;
+    scene.camera.width = 16;
+    scene.camera.height = 12;
+    SceneMedium blobs;
+    blobs.kind =
+        SceneGaussians{{{{0, 1, 0}, 0.9, 0.5}, {{1, 1.4, -1}, 1.2, 0.8}}, {}, glm::dvec3(0.8)};
+    scene.media = {blobs};
+    add_sky(scene, sky(1, false), 30);
+    const World world(scene);
+    const Plan plan = plan_of_everything(world);
+    const Both both(world, plan, {}, 256);
+    EXPECT_NEAR(both.mean, 1, 5e-3);
+    EXPECT_LT(both.difference, 0.05);
+    FastMethods coarse;
+    coarse.map_airlight = FastMapAirlight::march4;
+    EXPECT_GT(Both(world, plan, coarse, 16).difference, 0);
 }
 
 TEST_F(FastTest, WhatIsAbsentCostsNothing) {
