@@ -17,6 +17,7 @@
 #include "bench/rounds.h"
 #include "core/threads.h"
 #include "viewer/camera.h"
+#include "viewer/path_tracer.h"
 #include "viewer/reference.h"
 
 namespace airlight {
@@ -129,6 +130,30 @@ void compare(const std::string& title, const Scene& scene, int rounds) {
     }
 }
 
+// Samples by paths, on the same rays.
+void trace_paths(const std::string& title, const Scene& scene, int rounds) {
+    const World world(scene);
+    const Rays rays(scene.camera);
+    const PathTracer tracer(world, {});
+    std::vector<double> seconds;
+    ReferenceCounts counts;
+    for (int round = 0; round < rounds; ++round) {
+        counts = {};
+        glm::dvec3 sum(0);
+        seconds.push_back(measure([&] {
+                              for (std::size_t i = 0; i < rays.directions.size(); ++i) {
+                                  SampleStream stream(i, 0);
+                                  sum += tracer.radiance(scene.camera.position, rays.directions[i],
+                                                         stream, counts);
+                              }
+                          }).cpu);
+    }
+    const auto paths = static_cast<double>(rays.directions.size());
+    fmt::print("{:24} paths            {:8.3f} Mpaths/s  {:6.1f} points  {:6.1f} rays\n", title,
+               1e-6 * paths / median(seconds), double(counts.line_points) / paths,
+               double(counts.rays) / paths);
+}
+
 }  // namespace
 }  // namespace airlight
 
@@ -148,21 +173,26 @@ int main(int argc, char** argv) {
     scene.camera.position = {0, 2, 8};
     scene.media = {fog(0.05)};
     compare("fog alone", scene, rounds);
+    trace_paths("fog alone", scene, rounds);
     scene = courtyard(directory, 8);
     compare("3 balls, no fog", scene, rounds);
     scene.media = {fog(0.05)};
     compare("fog, 3 balls of 224", scene, rounds);
+    trace_paths("fog, 3 balls of 224", scene, rounds);
     scene.media[0].kind = SceneUniform{{0.05, 0.06, 0.08}, {0.01, 0, 0}};
     compare("coloured fog", scene, rounds);
+    trace_paths("coloured fog", scene, rounds);
     scene.media[0] = fog(0.05);
     scene.media[0].phase.type = PhaseType::henyey_greenstein;
     scene.media[0].phase.g = 0.6;
     compare("fog, hg", scene, rounds);
+    trace_paths("fog, hg", scene, rounds);
     scene.media = {fog(0.02)};
     SceneMedium steam;
     steam.kind = SceneGaussians{{{{0, 1, 0}, 1, 0.3}}, {}, glm::dvec3(1)};
     scene.media.push_back(steam);
     compare("fog and a Gaussian", scene, rounds);
+    trace_paths("fog and a Gaussian", scene, rounds);
     scene = courtyard(directory, 128);
     scene.media = {fog(0.05)};
     compare("fog, 3 balls of 65024", scene, rounds);

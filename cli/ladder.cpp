@@ -47,6 +47,7 @@ std::vector<LadderEffectInfo> ladder_effects() {
             {ladder.effect, [&ladder](const LadderOptions&) { return ladder.plan(); }});
     }
     effects.push_back({"transfer", [](const LadderOptions&) { return plan_transfer_ladder(); }});
+    effects.push_back({"multiple", plan_multiple_ladder});
     return effects;
 }
 
@@ -183,8 +184,10 @@ Command declare_ladder(CLI::App& program) {
                  request->options.optical_thickness =
                      parse_number(text, "--optical-thickness", {0, 50, true});
              });
-    command.app->add_flag("--full", request->options.full,
-                          "Cost for maps 16 times as wide as --size (default: 8 times)");
+    command.app->add_flag(
+        "--full", request->options.full,
+        "Cost for maps 16 times as wide as --size (default: 8 times); 80 times the paths of "
+        "multiple");
     add_json_flag(command, "Print the tables as JSON");
     add_force_flag(command);
     command.run = [request, common = command.common] { run_ladder(*request, *common); };

@@ -15,7 +15,8 @@ namespace airlight {
 struct LadderOptions {
     int width = 512, height = 256;  ///< of the map on which errors of fog are measured
     double optical_thickness = 2;   ///< of its fog; at 1 the factored form would be exact
-    bool full = false;              ///< take cost to sizes 16 times as wide instead of 8
+    /// Take cost to sizes 16 times as wide instead of 8, and 80 times the paths.
+    bool full = false;
 };
 
 /// A plot and the table of what it shows: NAME.svg and NAME.csv. Without columns there is no CSV,
@@ -52,6 +53,9 @@ LadderWork plan_fog_ladder(const LadderOptions& options);
 
 /// Visibility and transfer of a mesh by every choice of directions.
 LadderWork plan_transfer_ladder();
+
+/// Glows by single scattering against all scattering; more paths where `full`.
+LadderWork plan_multiple_ladder(const LadderOptions& options);
 
 /// Which time a measurement is of. CPU time hardly depends on what else the machine does, and where
 /// one thread does all the work it is the wall time of an idle machine.

@@ -232,7 +232,7 @@ Command declare_render(CLI::App& program) {
         });
     add_flag(command, "--bounces", "N",
              "Points at most where a path is scattered or reflected, with --scattering multiple "
-             "(default: 1024)",
+             "(default: 4096)",
              [=](const std::string& text) {
                  request->options.paths.max_bounces =
                      parse_integer(text, "--bounces", 1, kLargestBounces);

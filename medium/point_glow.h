@@ -22,12 +22,12 @@ class PointGlow {
     explicit PointGlow(double albedo);
 
     /// phi of light scattered at least once [1], for T in (0, inf]: 4 pi T^2 phi (1 - c) integrates
-    /// to c. Relative 1e-12 for c of 0.3 to 1, T of 1e-3 to 100; 0.6 us.
+    /// to c. Relative 1e-12 for c of 0.3 to 1, T of 1e-3 to 100; 11 us.
     double collided_fluence(double t) const;
 
     /// Radiance of all scattered light along a ray over sigma_t^2 I, c int_0^T_vp e^{-t} phi(d) dt
     /// (medium/airlight.h has the angle and thicknesses); gamma in (0, pi), t_sv in (0, inf), t_vp
-    /// in [0, inf]. Of single scattering it is airlight() times the albedo. Relative 1e-8; 0.1 ms.
+    /// in [0, inf]. Of single scattering it is airlight() times the albedo. Relative 1e-8; 2 ms.
     double radiance(double gamma, double t_sv, double t_vp) const;
 
   private:

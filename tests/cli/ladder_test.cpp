@@ -351,6 +351,36 @@ TEST(Ladder, ChoicesOfDirectionsKeepTheirOrder) {
     expect_self_contained(read_bytes(scratch / "index.html"));
 }
 
+// Figure 7 of [Sun05] has less than 4 % up to a thickness of 2.
+TEST(Ladder, SingleScatteringIsFarFromAllOfIt) {
+    const ScratchDirectory scratch;
+    const Outcome outcome = run({"ladder", "multiple", "-o", scratch.path()});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    std::map<std::string, std::map<double, double>> exact;  // by albedo and thickness
+    int compared = 0;
+    for (const CsvRow& row : read_csv(scratch / "multiple.csv")) {
+        const double thickness = std::stod(row.at("optical_thickness"));
+        const double error = std::stod(row.at("rms_relative_error"));
+        EXPECT_LE(std::stod(row.at("rms_relative_error_scaled")), error);
+        std::map<double, double>& of_albedo = exact[row.at("albedo")];
+        if (row.at("paths_per_ray").empty()) {
+            EXPECT_GE(error, of_albedo.empty() ? 0.05 : of_albedo.rbegin()->second) << thickness;
+            of_albedo[thickness] = error;
+        } else if (row.at("g") == "0") {
+            // Two ways to the same; the mean of 22 noisy rays is nearer than one.
+            EXPECT_NEAR(error, of_albedo.at(thickness), std::stod(row.at("noise"))) << thickness;
+            ++compared;
+        }
+    }
+    EXPECT_EQ(compared, 9);
+    EXPECT_NEAR(exact["1"].at(2), 0.715, 1e-3);
+    EXPECT_NEAR(exact["0.9"].at(2), 0.515, 1e-3);
+    for (const char* plot : {"multiple", "multiple-shape"}) {
+        EXPECT_EQ(read_bytes(scratch / (plot + std::string(".svg"))).rfind("<svg ", 0), 0u);
+    }
+    expect_self_contained(read_bytes(scratch / "index.html"));
+}
+
 TEST(Ladder, MistakesAndOldReportsAreRefusedBeforeAnythingIsMeasured) {
     const ScratchDirectory scratch;
     const std::string directory = scratch.path();

@@ -14,6 +14,8 @@
 #include "core/error.h"
 #include "core/threads.h"
 #include "envmap/io.h"
+#include "medium/airlight.h"
+#include "medium/point_glow.h"
 #include "tests/core/scratch_directory.h"
 #include "viewer/media_sampling.h"
 #include "viewer/reference_picture.h"
@@ -257,6 +259,38 @@ TEST_F(PathTracerTest, ARoomThatOnlyItsWallsDarkenKeepsTheLampsPower) {
         EXPECT_LT(mean.error(0), 1e-2 * expected);
         // 1e-4 m of fog take some and add some, at most 2e-4 of it.
         EXPECT_NEAR(mean.mean.x, expected, 3 * mean.error(0) + 2e-4 * expected) << g;
+    }
+}
+
+TEST_F(PathTracerTest, GlowsInEndlessFogAreThoseOfTransportTheory) {
+    // Where nothing is absorbed, more than N points bring (3 / (4 pi))^{3/2} 2 / sqrt(N) to all
+    // points near a light of unit power.
+    constexpr double kMissing = 0.2334 / 32;
+    PathTracerOptions options;
+    options.max_bounces = 1024;
+    for (const double albedo : {1.0, 0.9}) {
+        Scene scene;
+        scene.lights = {{{0, 0, 0}, glm::dvec3(1)}};
+        scene.media = {uniform(0.5 * albedo, 0.5 * (1 - albedo))};
+        const World world(scene);
+        const PathTracer tracer(world, options);
+        const PointGlow glow(albedo);
+        for (const double gamma : {0.2, 1.0}) {
+            const double t_sv = albedo < 1 ? 1.5 : 0.5;
+            const glm::dvec3 eye(0, 0, 2 * t_sv);
+            Mean mean;
+            for (int i = 0; i < 100000; ++i) {
+                SampleStream stream(1, static_cast<std::uint64_t>(i));
+                mean.add(
+                    tracer.radiance(eye, {std::sin(gamma), 0, -std::cos(gamma)}, stream, counts_));
+            }
+            const double missing = albedo < 1 ? 0 : kMissing;
+            const double expected = 0.25 * (glow.radiance(gamma, t_sv, kInfinite) - missing);
+            EXPECT_LT(mean.error(0), 1.5e-2 * expected);
+            EXPECT_NEAR(mean.mean.x, expected, 3 * mean.error(0)) << albedo << " " << gamma;
+            // Single scattering would be far off.
+            EXPECT_GT(expected, 1.2 * 0.25 * albedo * airlight(gamma, t_sv, kInfinite));
+        }
     }
 }
 
