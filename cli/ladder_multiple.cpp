@@ -30,7 +30,7 @@ using Profile = std::array<double, kAngles>;
 
 /// A medium, and how the light that it scatters any number of times is found.
 struct Fog {
-    const char* label;
+    const char* label;  ///< in the legend; empty for none
     double albedo, g;
     bool by_paths;
     const char* colour;
@@ -41,9 +41,9 @@ const Fog kFogs[] = {
     {"albedo 1", 1, 0, false, kPlotColours[0], {0.25, 0.5, 1, 2, 4, 8, 15, 25}},
     {"albedo 0.9", 0.9, 0, false, kPlotColours[2], {0.25, 0.5, 1, 2, 4, 8, 15, 25}},
     {"albedo 0.5", 0.5, 0, false, kPlotColours[3], {0.25, 0.5, 1, 2, 4, 8, 15, 25}},
-    {"albedo 1, paths", 1, 0, true, kPlotColours[0], {0.25, 0.5, 1, 2}},
-    {"albedo 0.9, paths", 0.9, 0, true, kPlotColours[2], {0.25, 0.5, 1, 2, 4}},
-    {"g = 0.85, albedo 1, paths", 1, 0.85, true, kPlotColours[1], {0.25, 0.5, 1, 2, 4}},
+    {"", 1, 0, true, kPlotColours[0], {0.25, 0.5, 1, 2}},
+    {"", 0.9, 0, true, kPlotColours[2], {0.25, 0.5, 1, 2, 4}},
+    {"albedo 1, g = 0.85", 1, 0.85, true, kPlotColours[1], {0.25, 0.5, 1, 2, 4}},
 };
 
 struct GlowError {
@@ -131,7 +131,8 @@ Plot make_plot(const std::vector<GlowError>& errors, bool scaled) {
     Plot plot;
     plot.title = scaled ? "Glows by single scattering, scaled to fit, against all scattering"
                         : "Glows by single scattering against all scattering";
-    plot.subtitle = "a point light in endless fog, rays at 2 to 44 degrees from it";
+    plot.subtitle =
+        "a point light in endless fog, rays at 2 to 44 degrees from it; hollow: by paths";
     plot.x.label = "optical thickness from the viewer to the light";
     plot.y.label = "relative RMS error";
     for (std::size_t f = 0; f < std::size(kFogs); ++f) {
@@ -145,7 +146,7 @@ Plot make_plot(const std::vector<GlowError>& errors, bool scaled) {
         plot.series.push_back(std::move(series));
     }
     plot.series.push_back(
-        {"as printed in 2005: less than", kPlotColours[5], true, {{0.25, 0.04}, {2, 0.04}}});
+        {"printed in 2005: below", kPlotColours[5], true, {{0.25, 0.04}, {2, 0.04}}});
     return plot;
 }
 

@@ -170,7 +170,13 @@ void run_render(const RenderRequest& request, const CommonOptions& common) {
         ProgressOptions drawing;
         drawing.quiet = common.verbosity < 0;
         const bool twice = request.options.tolerance > 0 && request.options.samples > kFirstSamples;
-        Progress progress("render", (twice ? 2 : 1) * std::uint64_t(width) * std::uint64_t(height),
+        // Paths go round the picture as often as their number doubles.
+        int rounds = twice && !multiple ? 2 : 1;
+        if (twice && multiple) {
+            for (int n = kFirstSamples; n < request.options.samples; n *= 2) ++rounds;
+        }
+        Progress progress("render",
+                          std::uint64_t(rounds) * std::uint64_t(width) * std::uint64_t(height),
                           drawing);
         picture = render_reference(world, plan, options, common.max_memory, &progress);
     }
@@ -248,7 +254,8 @@ Command declare_render(CLI::App& program) {
              });
     add_flag(command, "--tolerance", "E",
              "Noise, relative to the brightest pixel, at which a pixel is done (default: take all "
-             "samples); integrals along rays are made to a tenth of it or of the scene's",
+             "samples), or the picture, with multiple scattering; integrals along rays are made to "
+             "a tenth of it or of the scene's",
              [=](const std::string& text) {
                  request->options.tolerance = parse_number(text, "--tolerance", {1e-9, 1});
              });

@@ -23,7 +23,12 @@
 //
 // Light passes between surfaces, too. Slabs are refused, and particles of shafts are left out.
 //
-// Deviates: [Sun05] sec. 3.3 has media alone and a "standard volumetric Monte Carlo approach".
+// Paths per CPU second, one thread, with one lamp (bench/reference_bench.cpp, on a busy machine):
+// fog alone 0.047e6, over a floor with three balls 0.067e6, coloured 0.050e6, with Henyey and
+// Greenstein's phase function 0.042e6, with a Gaussian besides 0.019e6. Errors: within the noise,
+// 0.3 % to 1 %, of ReferenceRenderer where `single`, of a white furnace, of a room's energy, and of
+// transport theory (medium/point_glow.h). What single scattering leaves out is drawn by
+// `airlight ladder multiple`, [Sun05] fig. 7.
 #pragma once
 
 #include <glm/vec3.hpp>

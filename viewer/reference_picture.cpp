@@ -121,8 +121,21 @@ ReferencePicture render_reference(const World& world, const Plan& plan,
         for (const PixelSum& sum : sums) most = std::max(most, sum.brightness());
         return most;
     };
+    const auto noise = [&] {
+        const double level = brightest();
+        double squares = 0;
+        for (const PixelSum& sum : sums) squares += sum.error() * sum.error();
+        return level > 0 ? std::sqrt(squares / double(pixels)) / level : 0;
+    };
     const auto samples = static_cast<std::uint32_t>(options.samples);
-    if (options.tolerance > 0 && options.samples > kFirstSamples) {
+    const bool together = options.scattering == Scattering::multiple;
+    if (options.tolerance > 0 && together) {
+        for (std::uint32_t most = std::min<std::uint32_t>(kFirstSamples, samples);;
+             most = std::min(2 * most, samples)) {
+            take_samples(most, -1);
+            if (most == samples || noise() <= options.tolerance) break;
+        }
+    } else if (options.tolerance > 0 && options.samples > kFirstSamples) {
         take_samples(kFirstSamples, -1);
         take_samples(samples, options.tolerance * brightest());
     } else {
@@ -131,17 +144,17 @@ ReferencePicture render_reference(const World& world, const Plan& plan,
 
     result.image = Image(width, height, 3);
     const double level = brightest();
-    double squares = 0;
+    result.noise = noise();
+    const bool finished = together && result.noise <= options.tolerance;
     for (std::size_t i = 0; i < pixels; ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
             result.image.pixels[3 * i + c] = static_cast<float>(sums[i].mean[static_cast<int>(c)]);
         }
         result.samples += sums[i].count;
         const double error = level > 0 ? sums[i].error() / level : 0;
-        squares += error * error;
-        result.unfinished += options.tolerance > 0 && error > options.tolerance ? 1 : 0;
+        const bool noisy = options.tolerance > 0 && error > options.tolerance && !finished;
+        result.unfinished += noisy ? 1 : 0;
     }
-    result.noise = std::sqrt(squares / double(pixels));
     return result;
 }
 

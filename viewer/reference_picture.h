@@ -24,7 +24,9 @@ struct ReferencePictureOptions {
     PathTracerOptions paths;     ///< of multiple scattering, which takes no plan
     int samples = 16;            ///< of each pixel at most, 1 … kLargestSamples
     /// Standard error, relative to the brightest pixel, at which a pixel needs no more samples
-    /// than the first kFirstSamples; 0 makes all.
+    /// than the first kFirstSamples; 0 makes all. Of multiple scattering all pixels have as many,
+    /// 8, 16, 32 …, until the noise of the picture is within it: bright paths are rare, and pixels
+    /// that stopped before they met one left a street in fog 7 % darker at 0.02.
     double tolerance = 0;
     int width = 0, height = 0;  ///< pixels; 0: the camera's
 };

@@ -105,7 +105,7 @@ class PathTracerTest : public testing::Test {
         }
     }
 
-    // Rays into a pyramid of 17 degrees about -Z, one sample each, the same for both.
+    // Rays into a pyramid of 9 degrees about -Z, one sample each, the same for both.
     template <class Renderer>
     Mean mean_of(const Renderer& renderer, const glm::dvec3& eye, int samples,
                  std::uint64_t pixel) {
@@ -113,7 +113,7 @@ class PathTracerTest : public testing::Test {
         for (int i = 0; i < samples; ++i) {
             SampleStream stream(pixel, static_cast<std::uint64_t>(i));
             const double x = stream.next() - 0.5, y = stream.next() - 0.5;
-            mean.add(renderer.radiance(eye, glm::normalize(glm::dvec3(0.3 * x, 0.3 * y, -1)),
+            mean.add(renderer.radiance(eye, glm::normalize(glm::dvec3(0.15 * x, 0.15 * y, -1)),
                                        stream, counts_));
         }
         return mean;
@@ -126,7 +126,7 @@ class PathTracerTest : public testing::Test {
         const Mean paths = mean_of(PathTracer(world, single), eye, samples, 1);
         ReferenceOptions quadrature;
         quadrature.quadrature = 1e-3;
-        const Mean truth = mean_of(ReferenceRenderer(world, quadrature), eye, samples / 4, 2);
+        const Mean truth = mean_of(ReferenceRenderer(world, quadrature), eye, samples / 6, 2);
         for (int c = 0; c < 3; ++c) {
             const double error = std::hypot(paths.error(c), truth.error(c));
             EXPECT_LT(error, 5e-3 * truth.mean[c]) << "too few samples to tell";
@@ -292,6 +292,46 @@ TEST_F(PathTracerTest, GlowsInEndlessFogAreThoseOfTransportTheory) {
             EXPECT_GT(expected, 1.2 * 0.25 * albedo * airlight(gamma, t_sv, kInfinite));
         }
     }
+}
+
+TEST_F(PathTracerTest, APictureStopsAsAWholeAtItsToleranceForAnyNumberOfThreads) {
+    Scene scene;
+    scene.lights = {{{0.5, 1, 0}, glm::dvec3(1)}};
+    scene.media = {uniform(0.3, 0.1)};
+    scene.camera.position = {0, 0, 3};
+    scene.camera.look_at = {0, 0, 0};
+    const World world(scene);
+    ReferencePictureOptions options;
+    options.scattering = Scattering::multiple;
+    options.width = 12;
+    options.height = 8;
+    options.samples = 4096;
+    options.tolerance = 0.02;
+    std::vector<float> one;
+    for (const int threads : {1, 3}) {
+        const ThreadLimit limit(threads);
+        const ReferencePicture picture = render_reference(world, options);
+        EXPECT_LE(picture.noise, 0.02);
+        EXPECT_EQ(picture.unfinished, 0u);
+        EXPECT_EQ(picture.samples % (12 * 8 * kFirstSamples), 0u);
+        EXPECT_LT(picture.samples, 12u * 8 * 4096);
+        if (one.empty()) one = picture.image.pixels;
+        EXPECT_EQ(picture.image.pixels, one);
+    }
+    options.samples = 3;
+    EXPECT_EQ(render_reference(world, options).samples, 12u * 8 * 3);
+}
+
+TEST_F(PathTracerTest, RefusesSlabsAndNoPoints) {
+    Scene scene;
+    const World empty(scene);
+    PathTracerOptions none;
+    none.max_bounces = 0;
+    EXPECT_THROW(PathTracer(empty, none), Error);
+    SceneMedium slab;
+    slab.kind = SceneSlab{SceneBox{glm::dvec3(0), glm::dvec3(1)}, 1.3, glm::dvec3(1), {}};
+    scene.media = {slab};
+    EXPECT_THROW(PathTracer(World(scene), {}), Error);
 }
 
 }  // namespace
