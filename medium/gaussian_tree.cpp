@@ -145,11 +145,14 @@ std::uint32_t GaussianTree::build(std::uint32_t begin, std::uint32_t count) {
         if (blob.amplitude == 0) continue;
         node.min_scale = std::min(node.min_scale, blob.scale);
         node.whole += whole_of(blob);
+        node.peaks += blob.amplitude;
     }
     node.center = 0.5 * low + 0.5 * high;
     for (auto it = first; it != first + count; ++it) {
         node.radius = std::max(node.radius, norm(blobs_[*it].center - node.center));
     }
+    node.log_whole = std::log(node.whole / count);
+    node.log_peaks = std::log(node.peaks / count);
     node.begin = begin;
     node.count = count;
     const auto index = static_cast<std::uint32_t>(nodes_.size());
@@ -219,6 +222,80 @@ void GaussianTree::visit(const Distance& distance, double tolerance, const Take&
         }
     }
     if (visits != nullptr) *visits = seen;
+}
+
+template <class Distance, class Most, class Take>
+void GaussianTree::descend(const Distance& distance, const Most& most, double tolerance,
+                           const Take& take, GaussianTreeVisits* visits) const {
+    const double share = blobs_.empty() ? 0 : tolerance / static_cast<double>(blobs_.size());
+    const double log_share = std::log(share);
+    GaussianTreeVisits seen;
+    // Medians halve: no path is longer than the bits of a count.
+    std::uint32_t open[40];
+    int last = -1;
+    if (!nodes_.empty()) open[++last] = 0;
+    while (last >= 0) {
+        const std::uint32_t index = open[last--];
+        const Node& node = nodes_[index];
+        ++seen.nodes;
+        const double gap = std::max(distance(node.center) - node.radius, 0.0);
+        const double x = node.min_scale * gap;
+        if (most.log_mean(node) - x * x <= log_share || node.whole == 0) continue;
+        if (node.second != 0) {
+            open[++last] = node.second;
+            open[++last] = index + 1;
+            continue;
+        }
+        for (std::uint32_t i = node.begin; i < node.begin + node.count; ++i) {
+            const GaussianBlob& blob = blobs_[order_[i]];
+            ++seen.blobs;
+            if (bound(most.of(blob), blob.scale, distance(blob.center)) <= share) continue;
+            ++seen.taken;
+            take(blob);
+        }
+    }
+    if (visits != nullptr) *visits = seen;
+}
+
+double GaussianTree::quick_optical_depth(const glm::dvec3& origin, const glm::dvec3& direction,
+                                         double dist, double tolerance,
+                                         GaussianTreeVisits* visits) const {
+    glm::dvec3 unit = direction;
+    if (!within_limits(origin) || !normalise(unit) || !(dist >= 0 && tolerance >= 0)) return kNan;
+    struct Most {
+        double log_mean(const Node& node) const { return node.log_whole; }
+        double of(const GaussianBlob& blob) const { return whole_of(blob); }
+    };
+    // Limits of coordinates are far from where squares overflow.
+    const auto distance = [&](const glm::dvec3& point) {
+        const glm::dvec3 to = point - origin;
+        const double t = std::clamp(glm::dot(to, unit), 0.0, dist);
+        const glm::dvec3 off = to - t * unit;
+        return std::sqrt(glm::dot(off, off));
+    };
+    double sum = 0;
+    const auto take = [&](const GaussianBlob& blob) {
+        sum += gaussian_optical_depth(blob, origin, unit, dist);
+    };
+    descend(distance, Most(), tolerance, take, visits);
+    return sum;
+}
+
+double GaussianTree::density(const glm::dvec3& x, double tolerance,
+                             GaussianTreeVisits* visits) const {
+    if (!within_limits(x) || !(tolerance >= 0)) return kNan;
+    struct Most {
+        double log_mean(const Node& node) const { return node.log_peaks; }
+        double of(const GaussianBlob& blob) const { return blob.amplitude; }
+    };
+    const auto distance = [&](const glm::dvec3& point) {
+        const glm::dvec3 to = point - x;
+        return std::sqrt(glm::dot(to, to));
+    };
+    double sum = 0;
+    const auto take = [&](const GaussianBlob& blob) { sum += gaussian_density(blob, x); };
+    descend(distance, Most(), tolerance, take, visits);
+    return sum;
 }
 
 double GaussianTree::last_distance(const glm::dvec3& origin, double tolerance) const {

@@ -58,6 +58,19 @@ class GaussianTree {
     double optical_depth(const glm::dvec3& origin, const glm::dvec3& direction, double dist,
                          double tolerance, GaussianTreeVisits* visits = nullptr) const;
 
+    /// The same, faster and by more blobs: each has an even share of the tolerance, and a node of n
+    /// is left out where its bound is under the share of n. Nothing is sorted. A picture of 100000
+    /// blobs took a quarter of the time, with 1e-9.
+    double quick_optical_depth(const glm::dvec3& origin, const glm::dvec3& direction, double dist,
+                               double tolerance, GaussianTreeVisits* visits = nullptr) const;
+
+    /// Density [1/m] at a point, never above the sum over all blobs and below it by no more than
+    /// `tolerance` in [0, inf], by even shares likewise; the bound of a node is
+    /// (sum c) exp(-(min a)^2 d^2). NaN outside the domain. Of 1000, 10000
+    /// and 100000 blobs as above 75, 105 and 132 are taken at 240, 590 and 770 nodes for 1e-8 /m.
+    double density(const glm::dvec3& x, double tolerance,
+                   GaussianTreeVisits* visits = nullptr) const;
+
     /// The blobs, as ascending indices into blobs(), but for some whose optical depths along the
     /// segment add up to no more than `tolerance`. Empty for arguments outside the domain.
     std::vector<std::uint32_t> along(const glm::dvec3& origin, const glm::dvec3& direction,
@@ -78,7 +91,9 @@ class GaussianTree {
         glm::dvec3 center;
         double radius;
         double min_scale;
-        double whole;  ///< sum of A
+        double whole;                 ///< sum of A
+        double peaks;                 ///< sum of c
+        double log_whole, log_peaks;  ///< of their means over the blobs
         std::uint32_t begin, count;
         std::uint32_t second;  ///< 0 for a leaf
     };
@@ -87,6 +102,9 @@ class GaussianTree {
     template <class Distance, class Take>
     void visit(const Distance& distance, double tolerance, const Take& take,
                GaussianTreeVisits* visits) const;
+    template <class Distance, class Most, class Take>
+    void descend(const Distance& distance, const Most& most, double tolerance, const Take& take,
+                 GaussianTreeVisits* visits) const;
     double last_distance(const glm::dvec3& origin, double tolerance) const;
 
     std::vector<GaussianBlob> blobs_;

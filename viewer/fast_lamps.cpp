@@ -93,7 +93,7 @@ void FastLamps::light_surfaces(FastBlock& block, LayeredRadiance* out, FastCount
         arrivals.clear();
         for (const std::uint32_t i : block.hits) {
             const FastRay& ray = block.rays[i];
-            const glm::dvec3 to_light = light.position - ray.from;
+            const glm::dvec3 to_light = light.position - ray.hit.position;
             const double r = glm::length(to_light);
             if (!(r > 0)) continue;
             Arrival arrival;
@@ -108,7 +108,7 @@ void FastLamps::light_surfaces(FastBlock& block, LayeredRadiance* out, FastCount
             for (Arrival& arrival : arrivals) {
                 if (!arrival.above && !scatters) continue;
                 arrival.depth =
-                    depth(block.rays[arrival.ray].from, arrival.to_light, arrival.distance);
+                    depth(block.rays[arrival.ray].hit.position, arrival.to_light, arrival.distance);
             }
         }
         add_direct(lamp, block, arrivals, out, counts);
@@ -180,7 +180,7 @@ void FastLamps::add_scattered(std::size_t lamp, FastBlock& block,
             } else {
                 for (const MediumPart& part : media.parts()) {
                     scattering += part.albedo() *
-                                  part.depth(ray.from, arrival.to_light, arrival.distance) /
+                                  part.depth(ray.hit.position, arrival.to_light, arrival.distance) /
                                   arrival.distance;
                 }
             }

@@ -116,15 +116,17 @@ void ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::dvec3& 
     if (!in_media()) return;
     const SurfaceMaterial& material = materials_[hit.object];
     const auto path_to = [&](const glm::dvec3& direction) {
-        const RayPath path = follow_ray(world_, from, direction, attenuates());
+        RayPath path = follow_ray(world_, from, direction, attenuates());
         counts.rays += path.rays;
+        // Lifted only so that the surface does not stop it.
+        path.pieces.front().origin = hit.position;
         return path;
     };
     SampleStream of_lamps = stream.of(kLampsByMedia);
     for (std::size_t lamp = 0; lamp < plan_.lights.size(); ++lamp) {
         const double gamma = kPi * of_lamps.next(), azimuth = 2 * kPi * of_lamps.next();
         if (!plan_.lights[lamp].surface) continue;
-        const glm::dvec3 axis = glm::normalize(world_.scene().lights[lamp].position - from);
+        const glm::dvec3 axis = glm::normalize(world_.scene().lights[lamp].position - hit.position);
         glm::dvec3 x, y;
         make_axes(axis, x, y);
         const glm::dvec3 direction =
@@ -152,7 +154,7 @@ void ReferenceRenderer::surface(const WorldHit& hit, const glm::dvec3& to_viewer
         surface_in_slab(*slab, hit, to_viewer, from, stream.of(kMapOnSurfaces), counts, light);
     } else {
         for (const PointLight& lamp : world_.scene().lights) {
-            const glm::dvec3 to_light = lamp.position - from;
+            const glm::dvec3 to_light = lamp.position - hit.position;
             const double r = glm::length(to_light);
             if (!(r > 0) || !(glm::dot(to_light, hit.face) > 0)) continue;
             const glm::dvec3 f =
@@ -160,7 +162,7 @@ void ReferenceRenderer::surface(const WorldHit& hit, const glm::dvec3& to_viewer
             if (!(largest(f) > 0) || !sees(from, lamp.position, counts)) continue;
             light[RadianceLayer::direct] +=
                 f * lamp.intensity / (r * r) *
-                transmittance_of(straight_depth(from, to_light / r, r, counts));
+                transmittance_of(straight_depth(hit.position, to_light / r, r, counts));
         }
         if (plan_.runs(Effect::surface_environment)) {
             SampleStream of_map = stream.of(kMapOnSurfaces);

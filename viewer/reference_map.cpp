@@ -227,8 +227,9 @@ glm::dvec3 ReferenceRenderer::surface_of_scattered_map(const WorldHit& hit,
         return reflect(material, hit.normal, to_viewer, direction);
     };
     const auto path_to = [&](const glm::dvec3& direction) {
-        const RayPath path = follow_ray(world_, from, direction, attenuates());
+        RayPath path = follow_ray(world_, from, direction, attenuates());
         counts.rays += path.rays;
+        path.pieces.front().origin = hit.position;
         return path;
     };
     const bool endless = plan_.everything || world_.media().has_endless();

@@ -20,6 +20,7 @@ struct PartBuilder {
     std::shared_ptr<const GaussianTree>& tree;
     glm::dvec3& colour;
     glm::dvec3& albedo;
+    double& densest;
 
     void add(const Density& density) { shapes.push_back({{density}}); }
 
@@ -32,6 +33,7 @@ struct PartBuilder {
         albedo = m.albedo;
         if (m.blobs.size() > MediumPart::kFewBlobs) {
             tree = std::make_shared<GaussianTree>(m.blobs);
+            for (const GaussianBlob& blob : m.blobs) densest = std::max(densest, blob.amplitude);
             return;
         }
         shapes.push_back({{m.blobs.begin(), m.blobs.end()}});
@@ -96,7 +98,7 @@ std::optional<RaySpan> clip_to_box(const SceneBox& box, const glm::dvec3& origin
 
 MediumPart::MediumPart(const SceneMedium& medium)
     : phase_(phase_of(medium.phase)), bounds_(medium.bounds) {
-    std::visit(PartBuilder{shapes_, tree_, colour_, albedo_}, medium.kind);
+    std::visit(PartBuilder{shapes_, tree_, colour_, albedo_, densest_}, medium.kind);
     if (const auto* gaussians = std::get_if<SceneGaussians>(&medium.kind)) {
         gaussian_ = true;
         blobs_ = gaussians->blobs;
@@ -119,9 +121,7 @@ glm::dvec3 MediumPart::density(const glm::dvec3& x) const {
     if (everywhere_) return *everywhere_;
     if (bounds_ && !contains(*bounds_, x)) return glm::dvec3(0);
     if (tree_) {
-        double sum = 0;
-        for (const GaussianBlob& blob : tree_->blobs()) sum += gaussian_density(blob, x);
-        return glm::dvec3(sum);
+        return glm::dvec3(tree_->density(x, kTreeDensity * densest_));
     }
     return by_channel([&](const DensityField& shape) { return density_at(shape, x); });
 }
@@ -137,7 +137,7 @@ glm::dvec3 MediumPart::depth(const glm::dvec3& origin, const glm::dvec3& directi
         distance = span->far - span->near;
     }
     if (tree_) {
-        return glm::dvec3(tree_->optical_depth(from, direction, distance, kTreeDepth));
+        return glm::dvec3(tree_->quick_optical_depth(from, direction, distance, kTreeDepth));
     }
     return by_channel(
         [&](const DensityField& shape) { return optical_depth(shape, from, direction, distance); });

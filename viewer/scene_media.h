@@ -42,7 +42,8 @@ class MediumPart {
     /// Of Gaussians, else none.
     const std::vector<GaussianBlob>& blobs() const { return blobs_; }
 
-    /// Extinction [1/m] at a point; 0 outside the bounds.
+    /// Extinction [1/m] at a point; 0 outside the bounds. Of more than kFewBlobs Gaussians those
+    /// are left out that add up to kTreeDensity of the largest amplitude at most.
     glm::dvec3 density(const glm::dvec3& x) const;
 
     /// Optical depth along `distance` in [0, inf] of a unit direction, not negative, +inf where
@@ -71,7 +72,8 @@ class MediumPart {
     }
 
     static constexpr std::size_t kFewBlobs = 32;
-    static constexpr double kTreeDepth = 1e-9;
+    static constexpr double kTreeDepth = 1e-7;
+    static constexpr double kTreeDensity = 1e-9;
 
   private:
     /// of_shape(shape) for each channel, once where all have the same.
@@ -81,6 +83,7 @@ class MediumPart {
     /// One for all channels, scaled by colour_, or one for each.
     std::vector<DensityField> shapes_;
     std::shared_ptr<const GaussianTree> tree_;  ///< in place of a shape, for many Gaussians
+    double densest_ = 0;                        ///< their largest amplitude
     glm::dvec3 colour_{1}, albedo_{1};
     PhaseFunction phase_;
     std::optional<SceneBox> bounds_;

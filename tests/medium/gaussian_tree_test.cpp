@@ -54,12 +54,60 @@ TEST(GaussianTree, OpticalDepthIsWithinTheToleranceOfTheWholeSum) {
             const double rounding = 1e-12 * whole;
             EXPECT_LE(depth, whole + rounding);
             EXPECT_GE(depth, whole - tolerance - rounding);
+            const double quick = tree.quick_optical_depth(origin, direction, dist, tolerance);
+            EXPECT_LE(quick, whole + rounding);
+            EXPECT_GE(quick, whole - tolerance - rounding);
+            EXPECT_GE(quick, depth - tolerance - rounding);
             if (tolerance > 0)
                 most_left_out = std::max(most_left_out, (whole - depth - rounding) / tolerance);
         }
     }
     // The bound is used: something is left out, and not next to nothing.
     EXPECT_GT(most_left_out, 0.1);
+}
+
+TEST(GaussianTree, DensityIsWithinTheToleranceOfTheWholeSum) {
+    const std::vector<GaussianBlob> blobs = cloud(5000, 7);
+    const GaussianTree tree(blobs);
+    SweepDraw draw(8);
+    double most_left_out = 0;
+    for (int i = 0; i < 300; ++i) {
+        const glm::dvec3 x(draw.uniform(-8, 8), draw.uniform(-8, 8), draw.uniform(-8, 8));
+        double whole = 0;
+        for (const GaussianBlob& blob : blobs) whole += gaussian_density(blob, x);
+        for (const double tolerance : {0.0, 1e-9, 1e-4, 1e-2, 1.0}) {
+            const double density = tree.density(x, tolerance);
+            const double rounding = 1e-12 * whole;
+            EXPECT_LE(density, whole + rounding);
+            EXPECT_GE(density, whole - tolerance - rounding);
+            if (tolerance > 0) {
+                most_left_out = std::max(most_left_out, (whole - density - rounding) / tolerance);
+            }
+        }
+    }
+    // An even share leaves most of the tolerance unused, but not all.
+    EXPECT_GT(most_left_out, 1e-4);
+    EXPECT_TRUE(std::isnan(tree.density({0, 0, kNan}, 0)));
+    EXPECT_TRUE(std::isnan(tree.density({0, 0, 0}, -1)));
+    EXPECT_EQ(GaussianTree({}).density({0, 0, 0}, 0), 0);
+}
+
+TEST(GaussianTree, DensityLooksAtFewOfManyBlobs) {
+    for (const int count : {1000, 10000, 100000}) {
+        const GaussianTree tree(cloud(count));
+        SweepDraw draw(9);
+        double taken = 0, nodes = 0;
+        for (int i = 0; i < 100; ++i) {
+            const glm::dvec3 x(draw.uniform(-5, 5), draw.uniform(-5, 5), draw.uniform(-5, 5));
+            GaussianTreeVisits visits;
+            tree.density(x, 1e-8, &visits);
+            taken += double(visits.taken) / 100;
+            nodes += double(visits.nodes) / 100;
+        }
+        // Blobs shrink as they grow in number, so about as many reach a point.
+        EXPECT_LT(taken, 200) << count;
+        EXPECT_LT(nodes, 1000) << count;
+    }
 }
 
 TEST(GaussianTree, TakesTheBlobsWithTheLargestBounds) {
