@@ -4,20 +4,17 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
-#include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "cli/numbers.h"
+#include "cli/picture_output.h"
 #include "cli/plan_flags.h"
+#include "cli/render_compare.h"
 #include "cli/stopwatch.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/progress.h"
-#include "envmap/io.h"
-#include "envmap/sheet.h"
 #include "viewer/fast_picture.h"
 #include "viewer/reference_picture.h"
 #include "viewer/scene_file.h"
@@ -32,13 +29,8 @@ struct RenderRequest {
     PlanOptions plan;
     double exposure = 0;
     bool bounces = false;  ///< --bounces is there
+    bool compare = false;  ///< both engines
 };
-
-bool is_png(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension == ".png";
-}
 
 void check(const RenderRequest& request, const CommonOptions& common) {
     if (request.inputs.size() != 1) {
@@ -59,37 +51,15 @@ void check(const RenderRequest& request, const CommonOptions& common) {
                     "is scattered once",
                     "--scattering multiple");
     }
+    if (request.compare &&
+        (request.options.scattering == Scattering::multiple || request.options.tolerance > 0)) {
+        throw Error(ErrorCode::usage, "takes neither --scattering multiple nor --tolerance",
+                    "--compare");
+    }
     if (request.bounces && request.options.scattering == Scattering::single) {
         throw Error(ErrorCode::usage, "is for --scattering multiple", "--bounces");
     }
-    if (is_png(request.output)) {
-        check_target(request.output, common.force);
-    } else {
-        WriteOptions write;
-        write.force = common.force;
-        check_writable(request.output, write);
-    }
-}
-
-// Display values, at the exposure that suits the picture.
-void write_display(const std::string& path, const Image& image, double stops, bool force) {
-    Sheet sheet;
-    sheet.width = image.width;
-    sheet.height = image.height;
-    sheet.pixels.resize(image.pixels.size());
-    const double exposure = automatic_exposure(image) * std::exp2(stops);
-    tone_map(image.pixels.data(), image.pixels.size() / 3, exposure, sheet.pixels.data());
-    write_png(path, sheet, force);
-}
-
-void write_picture(const RenderRequest& request, const Image& image, bool force) {
-    if (is_png(request.output)) {
-        write_display(request.output, image, request.exposure, force);
-        return;
-    }
-    WriteOptions write;
-    write.force = force;
-    write_image(request.output, image, write);
+    if (!request.compare) check_picture_target(request.output, common.force);
 }
 
 void run_fast(const RenderRequest& request, const World& world, const Plan& plan,
@@ -110,7 +80,7 @@ void run_fast(const RenderRequest& request, const World& world, const Plan& plan
         picture = render_fast(world, plan, {}, options, common.max_memory, &progress);
     }
     const double render_seconds = seconds_since(start);
-    write_picture(request, picture.image, common.force);
+    write_picture(request.output, picture.image, request.exposure, common.force);
     spdlog::info("{}: {} x {} pixels, {} samples, {:.2f} s", request.output, width, height,
                  picture.samples, render_seconds);
     if (!common.json) return;
@@ -136,6 +106,12 @@ void run_fast(const RenderRequest& request, const World& world, const Plan& plan
 
 void run_render(const RenderRequest& request, const CommonOptions& common) {
     check(request, common);
+    if (request.compare) {
+        render_and_compare(
+            {request.inputs[0], request.output, request.options, request.plan, request.exposure},
+            common);
+        return;
+    }
     auto start = std::chrono::steady_clock::now();
     const std::string& input = request.inputs[0];
     const Scene scene = read_scene(input, common.max_memory);
@@ -187,7 +163,7 @@ void run_render(const RenderRequest& request, const CommonOptions& common) {
             "with --samples",
             input, picture.unfinished, request.options.samples);
     }
-    write_picture(request, picture.image, common.force);
+    write_picture(request.output, picture.image, request.exposure, common.force);
     spdlog::info("{}: {} x {} pixels, {} samples, noise {:.2g} of the brightest, {:.1f} s",
                  request.output, width, height, picture.samples, picture.noise, render_seconds);
     if (!common.json) return;
@@ -220,6 +196,7 @@ Command declare_render(CLI::App& program) {
         "  airlight render courtyard.json -o courtyard.png\n"
         "  airlight render courtyard.json -o courtyard.exr --samples 256 --tolerance 0.002\n"
         "  airlight render courtyard.json -o small.png --size 200x150 --json\n"
+        "  airlight render courtyard.json -o both.png --compare --samples 64\n"
         "  airlight render courtyard.json -o all.png --scattering multiple --samples 256\n"
         "OUT is .exr, .hdr, .pfm or .tif (linear radiance) or .png (tone-mapped).");
     const auto request = std::make_shared<RenderRequest>();
@@ -244,6 +221,12 @@ Command declare_render(CLI::App& program) {
                      parse_integer(text, "--bounces", 1, kLargestBounces);
                  request->bounces = true;
              });
+    command.app
+        ->add_flag_callback(
+            "--compare", [=] { request->compare = true; },
+            "Render by both engines and measure the fast one: writes OUT with -reference, -fast "
+            "and -difference before its extension")
+        ->option_text(" ");
     add_flag(command, "--size", "WxH", "Pixels (default: the camera's)",
              [=](const std::string& text) {
                  parse_picture_size(text, request->options.width, request->options.height);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -47,23 +46,25 @@ void check(const ReferencePictureOptions& options) {
     }
 }
 
-using RadianceSampler = std::function<glm::dvec3(
+using RadianceSampler = std::function<LayeredRadiance(
     const glm::dvec3& origin, const glm::dvec3& direction, SampleStream&, ReferenceCounts&)>;
-
-template <class Renderer>
-RadianceSampler sampler_by(Renderer renderer) {
-    return [renderer = std::move(renderer)](const glm::dvec3& origin, const glm::dvec3& direction,
-                                            SampleStream& stream, ReferenceCounts& counts) {
-        return renderer.radiance(origin, direction, stream, counts);
-    };
-}
 
 RadianceSampler sampler_of(const World& world, const Plan& plan,
                            const ReferencePictureOptions& options) {
-    if (options.scattering == Scattering::multiple) {
-        return sampler_by(PathTracer(world, options.paths));
+    if (options.scattering == Scattering::single) {
+        return [renderer = ReferenceRenderer(world, plan, options.reference)](
+                   const glm::dvec3& origin, const glm::dvec3& direction, SampleStream& stream,
+                   ReferenceCounts& counts) {
+            return renderer.layers(origin, direction, stream, counts);
+        };
     }
-    return sampler_by(ReferenceRenderer(world, plan, options.reference));
+    return [tracer = PathTracer(world, options.paths)](
+               const glm::dvec3& origin, const glm::dvec3& direction, SampleStream& stream,
+               ReferenceCounts& counts) {
+        LayeredRadiance light;  // paths mix all layers
+        light[RadianceLayer::direct] = tracer.radiance(origin, direction, stream, counts);
+        return light;
+    };
 }
 
 }  // namespace
@@ -84,11 +85,14 @@ ReferencePicture render_reference(const World& world, const Plan& plan,
     const int height = options.height > 0 ? options.height : camera.height;
     const std::size_t pixels = checked_product(
         {static_cast<std::size_t>(width), static_cast<std::size_t>(height)}, "the picture");
-    require_memory(checked_multiply(pixels, sizeof(PixelSum) + 12, "the picture"), max_memory,
-                   "the picture", world.scene().path);
+    const std::size_t of_layers =
+        options.layers ? sizeof(LayeredRadiance) + 12 * kRadianceLayerCount : 0;
+    require_memory(checked_multiply(pixels, sizeof(PixelSum) + 12 + of_layers, "the picture"),
+                   max_memory, "the picture", world.scene().path);
     const glm::dmat3 axes = camera_axes(camera);
     const RadianceSampler radiance = sampler_of(world, plan, options);
     std::vector<PixelSum> sums(pixels);
+    std::vector<LayeredRadiance> layers(options.layers ? pixels : 0);
     ReferencePicture result;
 
     // Pixels of neighbours in a row.
@@ -103,9 +107,16 @@ ReferencePicture render_reference(const World& world, const Plan& plan,
                 while (sum.count < most && !(sum.count >= kFirstSamples && sum.error() <= wanted)) {
                     SampleStream stream(i, sum.count);
                     const double dx = stream.next(), dy = stream.next();
-                    sum.add(radiance(camera.position,
-                                     camera_direction(camera, axes, width, height, x + dx, y + dy),
-                                     stream, counts));
+                    const LayeredRadiance light =
+                        radiance(camera.position,
+                                 camera_direction(camera, axes, width, height, x + dx, y + dy),
+                                 stream, counts);
+                    sum.add(light.total());
+                    if (layers.empty()) continue;
+                    for (std::size_t l = 0; l < kRadianceLayerCount; ++l) {
+                        glm::dvec3& mean = layers[i].layers[l];
+                        mean += (light.layers[l] - mean) / double(sum.count);
+                    }
                 }
             }
             if (progress) progress->tick(end - begin);
@@ -143,12 +154,18 @@ ReferencePicture render_reference(const World& world, const Plan& plan,
     }
 
     result.image = Image(width, height, 3);
+    if (options.layers) result.layers.fill(result.image);
     const double level = brightest();
     result.noise = noise();
     const bool finished = together && result.noise <= options.tolerance;
     for (std::size_t i = 0; i < pixels; ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
-            result.image.pixels[3 * i + c] = static_cast<float>(sums[i].mean[static_cast<int>(c)]);
+            const int channel = static_cast<int>(c);
+            result.image.pixels[3 * i + c] = static_cast<float>(sums[i].mean[channel]);
+            for (std::size_t l = 0; options.layers && l < kRadianceLayerCount; ++l) {
+                result.layers[l].pixels[3 * i + c] =
+                    static_cast<float>(layers[i].layers[l][channel]);
+            }
         }
         result.samples += sums[i].count;
         const double error = level > 0 ? sums[i].error() / level : 0;

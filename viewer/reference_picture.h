@@ -2,6 +2,7 @@
 // Pictures by viewer/reference.h, or by viewer/path_tracer.h.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "core/progress.h"
@@ -29,6 +30,7 @@ struct ReferencePictureOptions {
     /// that stopped before they met one left a street in fog 7 % darker at 0.02.
     double tolerance = 0;
     int width = 0, height = 0;  ///< pixels; 0: the camera's
+    bool layers = false;        ///< also make the picture of every layer; of single scattering
 };
 
 inline constexpr int kLargestSamples = 1 << 20;
@@ -36,6 +38,8 @@ inline constexpr int kFirstSamples = 8;
 
 struct ReferencePicture {
     Image image;  ///< linear radiance, row 0 on top
+    /// Of each layer, by its number; empty unless asked for. Their sum is the image.
+    std::array<Image, kRadianceLayerCount> layers;
     ReferenceCounts counts;
     std::uint64_t samples = 0;
     /// Standard error of the pixels' means as their samples show it, root of the mean square, over

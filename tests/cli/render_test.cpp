@@ -50,6 +50,58 @@ TEST(RenderCommand, AWallInFogShowsTheAirlightBeforeIt) {
     EXPECT_GT(picture.at(0, 1, 0), picture.at(2, 1, 0));
 }
 
+TEST(RenderCommand, BothEnginesAreComparedRayByRay) {
+    const ScratchDirectory directory;
+    const std::string scene = write_scene(directory, kLamp), out = directory / "a.exr";
+    const Outcome outcome =
+        run({"render", scene, "-o", out, "--compare", "--samples", "8", "--json"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const nlohmann::json report = nlohmann::json::parse(outcome.out);
+    // Airlight over a black wall: a closed form in both, in float in one of them.
+    EXPECT_EQ(report["owner"], "airlight.point");
+    EXPECT_GT(report["brightest"], 0);
+    EXPECT_LT(report["errors"]["max"], 1e-5);
+    EXPECT_EQ(report["layers"]["direct"]["max"], 0);
+    for (const char* name : {"a-reference.exr", "a-fast.exr", "a-difference.png"}) {
+        EXPECT_TRUE(std::filesystem::exists(directory / name)) << name;
+    }
+    EXPECT_FALSE(std::filesystem::exists(out));
+    EXPECT_EQ(run({"render", scene, "-o", out, "--compare"}).status, 1) << "they exist";
+    EXPECT_EQ(run({"render", scene, "-o", out, "--compare", "--tolerance", "0.1"}).status, 2);
+}
+
+TEST(RenderCommand, EffectsAreLeftOutAsAsked) {
+    const ScratchDirectory directory;
+    const std::string scene = write_scene(directory, kLamp), out = directory / "a.exr";
+    const Outcome without =
+        run({"render", scene, "-o", out, "--without", "airlight.point,shafts", "--json"});
+    EXPECT_EQ(without.status, 0) << without.err;
+    const nlohmann::json plan = nlohmann::json::parse(without.out)["plan"];
+    EXPECT_EQ(plan["effects"]["airlight.point"]["runs"], false);
+    EXPECT_EQ(plan["effects"]["airlight.point"]["reason"], "left out as asked");
+    EXPECT_EQ(plan["effects"]["attenuation"]["runs"], true);
+    const Outcome wrong = run({"render", scene, "-o", out, "--only", "fog"});
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_NE(wrong.err.find("airlight.point"), std::string::npos) << wrong.err;
+}
+
+TEST(PlanCommand, SaysWhyInWordsAndInJson) {
+    const ScratchDirectory directory;
+    const std::string scene = write_scene(directory, kLamp);
+    const Outcome words = run({"plan", scene});
+    EXPECT_EQ(words.status, 0) << words.err;
+    EXPECT_NE(words.out.find("1 lamp in fog; closed form"), std::string::npos) << words.out;
+    const Outcome outcome = run({"plan", scene, "--json"});
+    const nlohmann::json plan = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(plan["effects"].size(), 17);
+    EXPECT_EQ(plan["effects"]["slab"]["runs"], false);
+    EXPECT_EQ(plan["effects"]["slab"]["reason"], "there is no slab");
+    EXPECT_LE(plan["bound"], 0.01);
+    EXPECT_EQ(run({"plan", scene, "--json"}).out, outcome.out) << "plans are deterministic";
+    EXPECT_EQ(run({"plan"}).status, 2);
+    EXPECT_EQ(run({"plan", scene, "--tolerance", "0"}).status, 2);
+}
+
 TEST(RenderCommand, EqualRunsGiveEqualBytes) {
     const ScratchDirectory directory;
     const std::string scene = write_scene(directory, kLamp);
