@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <vector>
 
 #include "core/error.h"
 #include "viewer/environment_sampler.h"
@@ -17,6 +19,13 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kSurePoints = 8;
+constexpr std::size_t kAllLamps = 8;
+constexpr int kChosenLamps = 4;
+
+struct ChosenLamp {
+    const PointLight* light;
+    double weight;  ///< one over how many times it is chosen on average
+};
 
 }  // namespace
 
@@ -29,6 +38,36 @@ struct PathTracer::Path {
     int points = 0, surfaces = 0;
     bool last = false;  ///< its ray has no more points: it sees the map or nothing
     MediaPoint collision{}, probe{};
+    std::vector<ChosenLamp> lamps{};
+    std::vector<double> chances{};
+
+    // All that the eye's own ray and its end see. Later some of many, half of them evenly, half by
+    // what they would send to x were nothing in between.
+    void choose_lamps(const std::vector<PointLight>& lights, const glm::dvec3& x,
+                      SampleStream& stream) {
+        lamps.clear();
+        if (points == 0 || lights.size() <= kAllLamps) {
+            for (const PointLight& light : lights) lamps.push_back({&light, 1});
+            return;
+        }
+        chances.clear();
+        double total = 0;
+        for (const PointLight& light : lights) {
+            const glm::dvec3 way = light.position - x;
+            chances.push_back(largest(light.intensity) / (glm::dot(way, way) + 1e-6));
+            total += chances.back();
+        }
+        const double even = 1 / static_cast<double>(lights.size()), shift = stream.next();
+        double below = 0;
+        int chosen = 0;
+        for (std::size_t i = 0; i < lights.size(); ++i) {
+            const double chance = total > 0 ? 0.5 * (even + chances[i] / total) : even;
+            below += chance;
+            for (; chosen < kChosenLamps && (chosen + shift) / kChosenLamps < below; ++chosen) {
+                lamps.push_back({&lights[i], 1 / (kChosenLamps * chance)});
+            }
+        }
+    }
 
     void turn(const glm::dvec3& x, const glm::dvec3& to, double density, const glm::dvec3& weight) {
         origin = x;
@@ -96,15 +135,17 @@ void PathTracer::lamps_in_media(Path& path, double end, double collision, Sample
                                 ReferenceCounts& counts) const {
     const SceneMedia& media = world_.media();
     const ColourPaths colours(path.throughput);
-    const auto add = [&](const PointLight& light, const EquiangularPaths& even, double t,
+    path.choose_lamps(world_.scene().lights, path.origin, stream);
+    const auto add = [&](const ChosenLamp& lamp, const EquiangularPaths& even, double t,
                          const MediaPoint& point, const glm::dvec3& transmittance) {
+        const PointLight& light = *lamp.light;
         const glm::dvec3 x = path.origin + t * path.direction, way = light.position - x;
         const double distance = glm::length(way);
         const double pdf = even.pdf(t) + colours.pdf(point.extinction(), transmittance);
         if (!(distance > 0 && pdf > 0)) return;
         const glm::dvec3 to_lamp = way / distance;
         const double cosine = std::clamp(glm::dot(to_lamp, path.direction), -1.0, 1.0);
-        const glm::dvec3 sent = point.sent_at_cosine(cosine) * transmittance / pdf;
+        const glm::dvec3 sent = point.sent_at_cosine(cosine) * transmittance * (lamp.weight / pdf);
         ++counts.line_points;
         if (!(largest(sent) > 0)) return;
         path.sum += path.throughput * sent * lamp_at(light, x, to_lamp, distance, counts);
@@ -112,14 +153,14 @@ void PathTracer::lamps_in_media(Path& path, double end, double collision, Sample
     const bool collides = collision < end;
     glm::dvec3 left(0);
     if (collides) left = media.transmittance(path.origin, path.direction, collision);
-    for (const PointLight& light : world_.scene().lights) {
-        const EquiangularPaths even(light.position, path.origin, path.direction, end);
+    for (const ChosenLamp& lamp : path.lamps) {
+        const EquiangularPaths even(lamp.light->position, path.origin, path.direction, end);
         const double t = even.distance(stream.next());
         if (t < end) {
             path.probe.move_to(media, path.origin + t * path.direction);
-            add(light, even, t, path.probe, media.transmittance(path.origin, path.direction, t));
+            add(lamp, even, t, path.probe, media.transmittance(path.origin, path.direction, t));
         }
-        if (collides) add(light, even, collision, path.collision, left);
+        if (collides) add(lamp, even, collision, path.collision, left);
     }
 }
 
@@ -163,12 +204,15 @@ bool PathTracer::reflect_at(Path& path, const WorldHit& hit, SampleStream& strea
                    ? reflect(material, hit.normal, to_viewer, direction)
                    : glm::dvec3(0);
     };
-    for (const PointLight& light : world_.scene().lights) {
+    path.choose_lamps(world_.scene().lights, from, stream);
+    for (const auto& [lamp, weight] : path.lamps) {
+        const PointLight& light = *lamp;
         const glm::dvec3 way = light.position - from;
         const double distance = glm::length(way);
         const glm::dvec3 f = sent(way / distance);
         if (!(largest(f) > 0)) continue;
-        path.sum += path.throughput * f * lamp_at(light, from, way / distance, distance, counts);
+        path.sum +=
+            path.throughput * f * weight * lamp_at(light, from, way / distance, distance, counts);
     }
     if (const EnvironmentSampler* const sampler = world_.sampler()) {
         const double choice_x = stream.next(), choice_y = stream.next();

@@ -6,7 +6,8 @@
 // that comes straight there. Points of a ray that a lamp's light is sought at are drawn in two
 // ways, by the free path and evenly in the angle that the lamp sees the ray at, each weighed by the
 // sum of both densities; directions to the map by the map and by the phase function or lobe
-// likewise. Colours share free paths, so that no channel's weight grows. Depths towards lamps and
+// likewise. Of more than 8 lamps the eye's own ray and its end see all, later points 4 that are
+// drawn. Colours share free paths, so that no channel's weight grows. Depths towards lamps and
 // map are closed forms: nothing of attenuation is sampled but where light scatters.
 //
 // The mean is exact but for paths of more than `max_bounces` points; no bias comes from the

@@ -182,6 +182,14 @@ TEST_F(PathTracerTest, ScatteredOnceOnSurfacesItIsTheReference) {
         expect_single_is_reference(scene, 200000);
     }
     {
+        SCOPED_TRACE("many lamps, some of which are drawn");
+        Scene many = scene;
+        for (int i = 0; i < 10; ++i) {
+            many.lights.push_back({{i - 5.0, 2 + 0.3 * i, -4.0 + i % 3}, glm::dvec3(0.3 * i)});
+        }
+        expect_single_is_reference(many, 160000);
+    }
+    {
         SCOPED_TRACE("a sky, too");
         // To fog without end the reference's map is a sphere of lights, the tracer's is not.
         scene.media[0].bounds = SceneBox{glm::dvec3(-6), glm::dvec3(6)};
