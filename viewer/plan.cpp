@@ -170,16 +170,43 @@ class Planner {
                "the scene asks for them");
         decide(Effect::noise, false, "scenes hold no noise");
         for (std::size_t i = 0; i < plan_.objects.size(); ++i) {
-            plan_.objects[i].glossy = is_glossy(world_.material(i));
-            plan_.objects[i].reason =
-                plan_.objects[i].glossy ? "its material mirrors" : "its material is diffuse";
+            ObjectPlan& object = plan_.objects[i];
+            object.glossy = is_glossy(world_.material(i));
+            object.reason = object.glossy ? "its material mirrors" : "its material is diffuse";
         }
+        if (plan_.engine == Engine::fast && has.map) by_baked_files();
         for (LampPlan& lamp : plan_.lights) {
             lamp.airlight_point = plan_.runs(Effect::airlight_point);
             lamp.airlight_gaussians = plan_.runs(Effect::airlight_gaussians);
             lamp.surface = plan_.runs(Effect::surface_point);
             lamp.shafts = plan_.runs(Effect::shafts);
         }
+    }
+
+    // The fast engine has shadows of the map from .prt files alone. Where there are both shadows
+    // and gloss it takes products of three, else of two.
+    void by_baked_files() {
+        std::size_t dot = 0, triple = 0;
+        for (std::size_t i = 0; i < plan_.objects.size(); ++i) {
+            ObjectPlan& object = plan_.objects[i];
+            const bool baked = scene_.objects[i].prt.given();
+            object.reason += baked ? "; its shadows are baked" : "; no .prt file, no shadows";
+            if (!baked) continue;
+            object.product = object.glossy ? SurfaceProduct::triple : SurfaceProduct::dot;
+            ++(object.glossy ? triple : dot);
+        }
+        const std::size_t baked = dot + triple;
+        const char* const none = "no object has a .prt file";
+        decide(Effect::shadow_prt, baked > 0,
+               baked > 0 ? count_of(baked, "object has", "objects have") + " a .prt file" : none);
+        decide(Effect::interreflection, baked > 0,
+               baked > 0 ? "as much as the .prt files hold" : none);
+        decide(Effect::product_dot, baked > 0,
+               baked > 0 ? "transfer times light, of the diffuse parts" : none);
+        decide(Effect::product_triple, triple > 0,
+               triple > 0 ? count_of(triple, "object has", "objects have") + " shadows and gloss"
+               : dot > 0  ? "no object has both shadows and gloss"
+                          : none);
     }
 
     bool anything_in_question() const {
