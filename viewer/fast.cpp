@@ -9,6 +9,17 @@
 #include "viewer/medium_depths.h"
 
 namespace airlight {
+namespace {
+
+bool meets_slab(const SceneSlabs& slabs, const glm::dvec3& origin, const FastRay& ray) {
+    for (const Slab& slab : slabs.all()) {
+        const auto entry = entry_of(slab.box, origin, ray.direction);
+        if (entry && entry->distance < ray.distance) return true;
+    }
+    return false;
+}
+
+}  // namespace
 
 FastRenderer::FastRenderer(const World& world, const Plan& plan, const FastMethods& methods)
     : world_(world),
@@ -37,26 +48,89 @@ void FastRenderer::trace(FastBlock& block, FastCounts& counts) const {
                              found.data());
     }
     block.hits.clear();
+    block.paths.clear();
+    const SceneSlabs& slabs = world_.slabs();
+    const bool refracts = plan_.runs(Effect::slab) && !slabs.empty();
     MediumDepths depths(world_.media());
     const bool attenuates = plan_.runs(Effect::attenuation) && !world_.media().empty();
     for (std::size_t i = 0; i < count; ++i) {
         FastRay& ray = block.rays[i];
         ray.meets = found[i].mesh != kNoMesh;
-        ray.slow = false;
         ray.distance = left;
         ray.transmittance = glm::dvec3(1);
+        ray.bent = false;
         if (ray.meets) {
             ray.hit = world_.hit_at(found[i].mesh, found[i].triangle, found[i].u, found[i].v,
                                     block.origin, ray.direction);
             ray.from = world_.lifted(ray.hit);
             ray.distance = ray.hit.distance;
-            block.hits.push_back(static_cast<std::uint32_t>(i));
         }
+        if (refracts && (slabs.at(block.origin) || meets_slab(slabs, block.origin, ray))) {
+            ray.bent = true;
+            trace_bent(ray, block, counts);
+            if (ray.meets) block.hits.push_back(static_cast<std::uint32_t>(i));
+            continue;
+        }
+        if (ray.meets) block.hits.push_back(static_cast<std::uint32_t>(i));
         if (attenuates && (ray.meets || environment)) {
             ++counts[Effect::attenuation];
             ray.transmittance =
                 transmittance_of(world_.media().depth(block.origin, ray.direction, ray.distance));
         }
+    }
+}
+
+// What it ends at, as the last of its pieces has it; the pieces before go to block.paths.
+void FastRenderer::trace_bent(FastRay& ray, FastBlock& block, FastCounts& counts) const {
+    ++counts[Effect::slab];
+    RayPath path = follow_ray(world_, block.origin, ray.direction, plan_.runs(Effect::attenuation));
+    counts.shadow_rays += path.rays;
+    ray.direction = path.pieces.back().direction;
+    ray.distance = path.pieces.back().distance;
+    ray.transmittance = path.throughput;
+    ray.meets = path.hit.has_value();
+    if (ray.meets) {
+        ray.hit = *path.hit;
+        ray.from = world_.lifted(ray.hit);
+    }
+    block.paths.push_back(std::move(path));
+}
+
+// Media along the pieces of bent rays.
+void FastRenderer::light_bent(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const {
+    if (block.paths.empty()) return;
+    auto path = block.paths.begin();
+    FastBlock single;
+    single.rays.resize(1);
+    for (std::size_t i = 0; i < block.rays.size(); ++i) {
+        if (!block.rays[i].bent) continue;
+        for (const RayPiece& piece : path->pieces) {
+            if (!(largest(piece.throughput) > 0)) continue;
+            if (piece.slab) {
+                for (std::size_t lamp = 0; lamp < world_.scene().lights.size(); ++lamp) {
+                    if (!plan_.lights[lamp].airlight_point) continue;
+                    out[i][RadianceLayer::airlight_point] +=
+                        piece.throughput * lamps_.light_slab(lamp, piece, counts);
+                }
+                out[i][RadianceLayer::airlight_environment] +=
+                    piece.throughput * map_.light_slab(piece, counts);
+                continue;
+            }
+            if (world_.media().empty()) continue;
+            single.origin = piece.origin;
+            single.rays[0] = FastRay();
+            single.rays[0].direction = piece.direction;
+            single.rays[0].distance = piece.distance;
+            single.rays[0].meets = &piece != &path->pieces.back() || path->hit;
+            LayeredRadiance sent;
+            lamps_.light_media(single, &sent, counts);
+            lamps_.light_particles(single, &sent, counts);
+            map_.light_media(single, &sent, counts);
+            for (std::size_t l = 0; l < kRadianceLayerCount; ++l) {
+                out[i].layers[l] += piece.throughput * sent.layers[l];
+            }
+        }
+        ++path;
     }
 }
 
@@ -67,6 +141,8 @@ void FastRenderer::shade_block(FastBlock& block, LayeredRadiance* out, FastCount
     map_.light_media(block, out, counts);
     lamps_.light_surfaces(block, out, counts);
     lamps_.light_media(block, out, counts);
+    lamps_.light_particles(block, out, counts);
+    light_bent(block, out, counts);
 }
 
 void FastRenderer::shade(const glm::dvec3* directions, std::size_t count, LayeredRadiance* out,

@@ -41,6 +41,8 @@ class FastRenderer {
 
   private:
     void trace(FastBlock& block, FastCounts& counts) const;
+    void trace_bent(FastRay& ray, FastBlock& block, FastCounts& counts) const;
+    void light_bent(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
     void shade_block(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
 
     const World& world_;

@@ -7,8 +7,9 @@
 #include "core/constants.h"
 #include "medium/airlight_batch.h"
 #include "medium/phase_airlight.h"
-#include "medium/quadrature.h"
 #include "viewer/fast_lamps.h"
+#include "viewer/medium_depths.h"
+#include "viewer/ray_nodes.h"
 #include "viewer/ray_shadows.h"
 
 namespace airlight {
@@ -16,6 +17,22 @@ namespace {
 
 int points_of(FastShafts method) {
     return method == FastShafts::map16 ? 16 : method == FastShafts::map32 ? 32 : 64;
+}
+
+RaySpan within(const RaySpan& span, const RaySpan& part) {
+    const RaySpan both{std::max(span.near, part.near), std::min(span.far, part.far)};
+    return both.near < both.far ? both : part;
+}
+
+int nodes_of(const FastMethods& methods, bool gaussians) {
+    if (!gaussians) {
+        return methods.airlight == FastAirlight::mixed_gl8    ? 8
+               : methods.airlight == FastAirlight::mixed_gl16 ? 16
+                                                              : 32;
+    }
+    return methods.gaussians == FastGaussians::mixed_gl8    ? 8
+           : methods.gaussians == FastGaussians::mixed_gl16 ? 16
+                                                            : 32;
 }
 
 }  // namespace
@@ -36,13 +53,111 @@ void FastLamps::lit(std::size_t lamp, const glm::dvec3& origin, const glm::dvec3
 }
 
 void FastLamps::light_media(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const {
-    if (!plan_.runs(Effect::airlight_point) || world_.media().empty()) return;
+    if (world_.media().empty()) return;
     for (std::size_t lamp = 0; lamp < world_.scene().lights.size(); ++lamp) {
-        if (!plan_.lights[lamp].airlight_point) continue;
+        const bool gaussians = plan_.runs(Effect::airlight_gaussians) &&
+                               plan_.lights[lamp].airlight_gaussians && world_.media().any(true);
+        const bool others = plan_.runs(Effect::airlight_point) &&
+                            plan_.lights[lamp].airlight_point && world_.media().any(false);
+        if (!gaussians && !others) continue;
         if (!(largest(world_.scene().lights[lamp].intensity) > 0)) continue;
-        if (uniform_) {
+        if (world_.media().everywhere()) {
             light_uniform(lamp, block, out, counts);
+        } else if (gaussians && !fogshop_.empty()) {
+            light_fogshop(lamp, others, block, out, counts);
+        } else {
+            light_varying(lamp, gaussians, others, block, out, counts);
         }
+    }
+}
+
+// [Zhou07] eq. 8 to 17 for each channel, the same for all where all media are grey.
+void FastLamps::light_fogshop(std::size_t lamp, bool others, FastBlock& block, LayeredRadiance* out,
+                              FastCounts& counts) const {
+    const glm::dvec3& intensity = world_.scene().lights[lamp].intensity;
+    const std::vector<GaussianAirlightEvaluator>& channels = fogshop_[lamp];
+    for (std::size_t i = 0; i < block.rays.size(); ++i) {
+        const FastRay& ray = block.rays[i];
+        if (ray.bent) continue;
+        ++counts[Effect::airlight_gaussians];
+        if (others) ++counts[Effect::airlight_point];
+        FogshopAirlight parts;
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (c < channels.size()) parts = channels[c].parts(ray.direction, ray.distance);
+            const int channel = static_cast<int>(c);
+            out[i][RadianceLayer::airlight_gaussians][channel] +=
+                gaussians_albedo_[channel] * intensity[channel] * parts.gaussians;
+            if (others) {
+                out[i][RadianceLayer::airlight_point][channel] +=
+                    uniform_albedo_[channel] * intensity[channel] * parts.uniform;
+            }
+        }
+    }
+}
+
+void FastLamps::light_varying(std::size_t lamp, bool gaussians, bool others, FastBlock& block,
+                              LayeredRadiance* out, FastCounts& counts) const {
+    const PointLight& light = world_.scene().lights[lamp];
+    const SceneMedia& media = world_.media();
+    const int count = nodes_of(methods_, gaussians);
+    const bool attenuates = plan_.runs(Effect::attenuation);
+    MediumDepths depths(media);
+    std::vector<RayInterval> parts;
+    std::vector<RayNode> nodes;
+    std::vector<glm::dvec3> points, to_lamp, origins, directions, depth, lamp_depth;
+    std::vector<double> distances, places;
+    for (std::size_t i = 0; i < block.rays.size(); ++i) {
+        const FastRay& ray = block.rays[i];
+        if (ray.bent) continue;
+        if (gaussians) ++counts[Effect::airlight_gaussians];
+        if (others) ++counts[Effect::airlight_point];
+        auto span =
+            span_of_media(media, MediumExtent::any, block.origin, ray.direction, ray.distance);
+        if (!span) continue;
+        const auto dense =
+            span_of_media(media, MediumExtent::limited, block.origin, ray.direction, ray.distance);
+        const bool dims = end_of_light(depths, light.position, block.origin, ray.direction, *span);
+        lit(lamp, block.origin, ray.direction, ray.distance, parts);
+        glm::dvec3 of_gaussians(0), of_others(0);
+        for (const RayInterval& part : parts) {
+            const RaySpan reach{std::max(part.begin, span->near), std::min(part.end, span->far)};
+            if (!(reach.near < reach.far)) continue;
+            ray_nodes(media, light.position, block.origin, ray.direction, reach,
+                      within(dense.value_or(reach), reach), dims, count, nodes);
+            const std::size_t n = nodes.size();
+            points.resize(n);
+            to_lamp.resize(n);
+            distances.resize(n);
+            places.resize(n);
+            depth.assign(n, glm::dvec3(0));
+            lamp_depth.assign(n, glm::dvec3(0));
+            origins.assign(n, block.origin);
+            directions.assign(n, ray.direction);
+            for (std::size_t k = 0; k < n; ++k) {
+                places[k] = nodes[k].t;
+                points[k] = block.origin + nodes[k].t * ray.direction;
+                to_lamp[k] = light.position - points[k];
+                distances[k] = std::max(glm::length(to_lamp[k]), 1e-12);
+                to_lamp[k] /= distances[k];
+            }
+            if (attenuates) {
+                depths(n, origins.data(), directions.data(), places.data(), depth.data());
+                depths(n, points.data(), to_lamp.data(), distances.data(), lamp_depth.data());
+            }
+            for (std::size_t k = 0; k < n; ++k) {
+                const glm::dvec3 arriving = transmittance_of(depth[k] + lamp_depth[k]) *
+                                            (nodes[k].weight / (distances[k] * distances[k]));
+                const double cosine = std::clamp(glm::dot(to_lamp[k], ray.direction), -1.0, 1.0);
+                for (const MediumPart& medium : media.parts()) {
+                    if (!(medium.is_gaussian() ? gaussians : others)) continue;
+                    const glm::dvec3 sent = medium.albedo() * medium.density(points[k]) *
+                                            medium.phase().at_cosine(cosine) * arriving;
+                    (medium.is_gaussian() ? of_gaussians : of_others) += sent;
+                }
+            }
+        }
+        out[i][RadianceLayer::airlight_gaussians] += light.intensity * of_gaussians;
+        out[i][RadianceLayer::airlight_point] += light.intensity * of_others;
     }
 }
 
@@ -64,7 +179,7 @@ void FastLamps::light_uniform(std::size_t lamp, FastBlock& block, LayeredRadianc
     length.clear();
     for (std::uint32_t i = 0; i < block.rays.size(); ++i) {
         const FastRay& ray = block.rays[i];
-        if (ray.slow) continue;
+        if (ray.bent) continue;
         ++counts[Effect::airlight_point];
         const double foot = glm::dot(to_light, ray.direction);
         const double height =

@@ -8,7 +8,9 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "medium/particles.h"
 #include "viewer/effects.h"
+#include "viewer/ray_path.h"
 #include "viewer/world.h"
 
 namespace airlight {
@@ -39,7 +41,7 @@ struct FastRay {
     glm::dvec3 direction{0};
     double distance = 0;  ///< to what it ends at; inf where it ends at nothing
     bool meets = false;   ///< it ends at a surface: `hit`
-    bool slow = false;    ///< it meets a slab, which others see to
+    bool bent = false;    ///< it met slabs: direction and distance are those of its last piece
     WorldHit hit;
     glm::dvec3 from{0};           ///< the hit, lifted off the surface
     glm::dvec3 transmittance{1};  ///< to where it ends
@@ -47,14 +49,34 @@ struct FastRay {
 
 /// Rays from the camera and room for vectors of floats.
 struct FastBlock {
-    static constexpr std::size_t kRays = 256;
+    static constexpr std::size_t kRays = 256, kCells = 1024;
+
+    struct Cell {
+        bool known = false;
+        std::int64_t x = 0, y = 0, z = 0;
+        Particle particle;
+    };
 
     glm::dvec3 origin{0};
     std::vector<FastRay> rays;
     std::vector<std::uint32_t> hits;  ///< rays that meet a surface
     std::array<std::vector<float>, 5> columns;
+    std::vector<Cell> cells;
     std::vector<glm::dvec3> points;
     std::vector<std::uint8_t> blocked;
+    /// The particle of a cell, remembered: neighbouring rays pass the same cells.
+    const Particle& particle(const std::int64_t cell[3], const ParticleOptions& options) {
+        if (cells.empty()) cells.resize(kCells);
+        const auto hash = static_cast<std::uint64_t>(cell[0] + 16 * cell[1] + 256 * cell[2]);
+        Cell& found = cells[hash % kCells];
+        if (!found.known || found.x != cell[0] || found.y != cell[1] || found.z != cell[2]) {
+            found = {true, cell[0], cell[1], cell[2],
+                     particle_in_cell(cell[0], cell[1], cell[2], options)};
+        }
+        return found.particle;
+    }
+
+    std::vector<RayPath> paths;  ///< of the rays that slabs bend, in their order
 };
 
 }  // namespace airlight

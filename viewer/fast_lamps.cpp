@@ -17,6 +17,8 @@ namespace {
 // errs by 1e-4.
 constexpr double kLeastExponent = 1, kLargestExponent = 1000;
 constexpr int kLobeTable = 48;
+// fogshop takes the square of their number to build.
+constexpr std::size_t kMostBlobs = 512;
 
 double clamped_exponent(double exponent) {
     return std::clamp(exponent, kLeastExponent, kLargestExponent);
@@ -41,7 +43,6 @@ FastLamps::FastLamps(const World& world, const Plan& plan, const FastMethods& me
                      FastCounts& counts)
     : world_(world), plan_(plan), methods_(methods) {
     const Scene& scene = world.scene();
-    uniform_ = world.media().everywhere() && world.slabs().empty();
     const auto wanted = [&](bool LampPlan::*part) {
         return std::any_of(plan.lights.begin(), plan.lights.end(),
                            [&](const LampPlan& lamp) { return lamp.*part; });
@@ -63,6 +64,7 @@ FastLamps::FastLamps(const World& world, const Plan& plan, const FastMethods& me
         }
         counts.tables += lobes_.size();
     }
+    build_fogshop(counts);
     const bool mapped =
         methods.shafts != FastShafts::unshadowed && methods.shafts != FastShafts::intervals;
     if (plan.runs(Effect::shafts) && mapped && world.rays()) {
@@ -71,6 +73,45 @@ FastLamps::FastLamps(const World& world, const Plan& plan, const FastMethods& me
             if (!plan.lights[i].shafts) continue;
             shadow_maps_[i] =
                 LampShadowMap(*world.rays(), scene.lights[i].position, shadow_map_size(scene));
+            ++counts.tables;
+        }
+    }
+}
+
+// For Gaussians without borders over at most one other medium, the same everywhere, all isotropic.
+void FastLamps::build_fogshop(FastCounts& counts) {
+    const bool asked = methods_.gaussians == FastGaussians::fogshop ||
+                       methods_.gaussians == FastGaussians::centroid;
+    if (!asked || !plan_.runs(Effect::airlight_gaussians)) return;
+    GaussianMedium medium;
+    glm::dvec3 uniform(0), scattering(0);
+    std::size_t gaussians = 0;
+    for (const MediumPart& part : world_.media().parts()) {
+        if (part.phase().kind() != PhaseKind::isotropic || part.bounds()) return;
+        if (part.everywhere()) {
+            uniform += *part.everywhere();
+            scattering += part.albedo() * *part.everywhere();
+        } else if (part.is_gaussian() && ++gaussians == 1 && part.blobs().size() <= kMostBlobs) {
+            medium.blobs = part.blobs();
+            gaussians_albedo_ = part.albedo();
+        } else {
+            return;
+        }
+    }
+    if (gaussians == 0) return;
+    for (int c = 0; c < 3; ++c) {
+        uniform_albedo_[c] = uniform[c] > 0 ? scattering[c] / uniform[c] : 0;
+    }
+    const bool grey = uniform.x == uniform.y && uniform.x == uniform.z;
+    const auto method = methods_.gaussians == FastGaussians::fogshop
+                            ? GaussianAirlightMethod::fogshop
+                            : GaussianAirlightMethod::centroid;
+    for (const PointLight& light : world_.scene().lights) {
+        fogshop_.emplace_back();
+        for (int c = 0; c < (grey ? 1 : 3); ++c) {
+            medium.beta0 = uniform[c];
+            fogshop_.back().emplace_back(method, medium, world_.scene().camera.position,
+                                         light.position);
             ++counts.tables;
         }
     }

@@ -10,6 +10,7 @@
 #include "viewer/fast_methods.h"
 #include "viewer/lamp_shadow_map.h"
 #include "viewer/plan.h"
+#include "viewer/ray_path.h"
 #include "viewer/surface_lobes.h"
 
 namespace airlight {
@@ -23,19 +24,29 @@ class FastLamps {
     /// surface_point of out[i] for ray i, dimmed on the way to the viewer.
     void light_surfaces(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
 
-    /// Adds what media that are no Gaussians send along the rays.
+    /// Adds what media send along the rays, to the layers airlight_point and airlight_gaussians.
     void light_media(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
+
+    /// Adds what particles send along the rays.
+    void light_particles(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
+    /// Radiance of a lamp that the medium of a slab, with what else fills it, sends along a piece
+    /// of a ray in it.
+    glm::dvec3 light_slab(std::size_t lamp, const RayPiece& piece, FastCounts& counts) const;
 
   private:
     struct Arrival;
+    bool sees(std::size_t lamp, const glm::dvec3& point, FastCounts& counts) const;
     void add_direct(std::size_t lamp, FastBlock& block, std::vector<Arrival>& arrivals,
                     LayeredRadiance* out, FastCounts& counts) const;
     void add_scattered(std::size_t lamp, FastBlock& block, const std::vector<Arrival>& arrivals,
                        LayeredRadiance* out, FastCounts& counts) const;
     void light_uniform(std::size_t lamp, FastBlock& block, LayeredRadiance* out,
                        FastCounts& counts) const;
-    void light_varying(std::size_t lamp, const FastRay& ray, const glm::dvec3& origin,
-                       LayeredRadiance& out, FastCounts& counts) const;
+    void light_fogshop(std::size_t lamp, bool others, FastBlock& block, LayeredRadiance* out,
+                       FastCounts& counts) const;
+    void light_varying(std::size_t lamp, bool gaussians, bool others, FastBlock& block,
+                       LayeredRadiance* out, FastCounts& counts) const;
+    void build_fogshop(FastCounts& counts);
     void lit(std::size_t lamp, const glm::dvec3& origin, const glm::dvec3& direction,
              double distance, std::vector<RayInterval>& parts) const;
     glm::dvec3 depth(const glm::dvec3& from, const glm::dvec3& direction, double distance) const;
@@ -47,7 +58,9 @@ class FastLamps {
     std::vector<SurfaceLobes> materials_;                    ///< by object
     std::vector<std::size_t> lobe_of_object_;                ///< of its glossy part
     std::vector<LampShadowMap> shadow_maps_;                 ///< by lamp; empty unless asked for
-    bool uniform_ = false;                                   ///< all media are the same everywhere
+    /// By lamp, one for each channel or for all; empty where the media are not theirs.
+    std::vector<std::vector<GaussianAirlightEvaluator>> fogshop_;
+    glm::dvec3 gaussians_albedo_{0}, uniform_albedo_{0};
 };
 
 }  // namespace airlight

@@ -219,7 +219,7 @@ void FastMap::show(FastBlock& block, LayeredRadiance* out) const {
     if (!world_.sampler()) return;
     for (std::size_t i = 0; i < block.rays.size(); ++i) {
         const FastRay& ray = block.rays[i];
-        if (ray.meets || ray.slow) continue;
+        if (ray.meets) continue;
         out[i][RadianceLayer::direct] += ray.transmittance * world_.environment(ray.direction);
     }
 }

@@ -46,6 +46,9 @@ class FastMap {
     void show(FastBlock& block, LayeredRadiance* out) const;
     /// Adds what media scatter of it along rays.
     void light_media(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
+    /// Radiance of it that the medium of a slab sends along a piece of a ray in it: as if the map's
+    /// mean came through six sides.
+    glm::dvec3 light_slab(const RayPiece& piece, FastCounts& counts) const;
     /// Adds its light on the surfaces that the rays end at.
     void light_surfaces(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
 

@@ -168,7 +168,7 @@ void FastMap::light_media(FastBlock& block, LayeredRadiance* out, FastCounts& co
     if (source_.empty() && paths_.empty()) return;
     for (std::size_t i = 0; i < block.rays.size(); ++i) {
         const FastRay& ray = block.rays[i];
-        if (ray.slow) continue;
+        if (ray.bent) continue;
         ++counts[Effect::airlight_environment];
         glm::dvec3& sum = out[i][RadianceLayer::airlight_environment];
         if (!paths_.empty()) {

@@ -11,13 +11,22 @@ namespace airlight {
 
 /// Light of lamps that media send along rays. Where all media are the same everywhere it is a
 /// closed form, in float vectors where they scatter evenly (medium/airlight_batch.h); these are for
-/// other media: Gauss-Legendre rules in the angle at which the lamp sees the ray, split where that
-/// is next to the lamp.
-enum class FastAirlight { angle_gl8, angle_gl16, angle_gl32 };
+/// other media: the nodes of viewer/ray_nodes.h on each part of a ray that the lamp reaches.
+enum class FastAirlight { mixed_gl8, mixed_gl16, mixed_gl32 };
 inline constexpr NamedMethod<FastAirlight> kFastAirlights[] = {
-    {FastAirlight::angle_gl8, "angle-gl8"},
-    {FastAirlight::angle_gl16, "angle-gl16"},
-    {FastAirlight::angle_gl32, "angle-gl32"},
+    {FastAirlight::mixed_gl8, "mixed-gl8"},
+    {FastAirlight::mixed_gl16, "mixed-gl16"},
+    {FastAirlight::mixed_gl32, "mixed-gl32"},
+};
+
+/// The same of Gaussians. fogshop and centroid cast no shadows in the media; where media are mixed
+/// that they do not take (others than Gaussians over a uniform fog, phase functions, borders) they
+/// give way to mixed-gl32.
+enum class FastGaussians { fogshop, centroid, mixed_gl8, mixed_gl16, mixed_gl32 };
+inline constexpr NamedMethod<FastGaussians> kFastGaussians[] = {
+    {FastGaussians::fogshop, "fogshop"},       {FastGaussians::centroid, "centroid"},
+    {FastGaussians::mixed_gl8, "mixed-gl8"},   {FastGaussians::mixed_gl16, "mixed-gl16"},
+    {FastGaussians::mixed_gl32, "mixed-gl32"},
 };
 
 /// Which parts of a ray a lamp reaches.
@@ -62,12 +71,33 @@ inline constexpr NamedMethod<FastSurfaceMap> kFastSurfaceMaps[] = {
     {FastSurfaceMap::order32, "order32"},
 };
 
+/// Particles in shafts: points on the ray in each cell that holds one.
+enum class FastParticles { cells1, cells2, cells6 };
+inline constexpr NamedMethod<FastParticles> kFastParticles[] = {
+    {FastParticles::cells1, "cells1"},
+    {FastParticles::cells2, "cells2"},
+    {FastParticles::cells6, "cells6"},
+};
+
+/// How the light of lamps reaches points of slabs, of which there are eight on each piece of a ray.
+enum class FastSlab {
+    straight,   ///< as if surfaces were not there
+    refracted,  ///< by Snell's law through each face, as the reference has it
+};
+inline constexpr NamedMethod<FastSlab> kFastSlabs[] = {
+    {FastSlab::straight, "straight"},
+    {FastSlab::refracted, "refracted"},
+};
+
 struct FastMethods {
-    FastAirlight airlight = FastAirlight::angle_gl32;
+    FastAirlight airlight = FastAirlight::mixed_gl32;
+    FastGaussians gaussians = FastGaussians::mixed_gl32;
     FastShafts shafts = FastShafts::intervals;
     FastSurfacePoint surface_point = FastSurfacePoint::gn_table;
     FastMapAirlight map_airlight = FastMapAirlight::march32;
     FastSurfaceMap surface_map = FastSurfaceMap::order32;
+    FastParticles particles = FastParticles::cells6;
+    FastSlab slab = FastSlab::refracted;
 };
 
 }  // namespace airlight

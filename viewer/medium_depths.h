@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Optical depths of many rays through the media of a scene, in float where these are Gaussians.
+// Optical depths of many rays through the media of a scene, in vectors of floats.
 #pragma once
 
+#include <cstddef>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -9,21 +10,44 @@
 
 namespace airlight {
 
-/// SceneMedia::depth() with Gaussians in vectors (medium/gaussian_line_batch.h): relative 1e-6. For
-/// one thread.
+/// SceneMedia::depth() for many rays: Gaussians, layers and atmospheres without borders by
+/// medium/gaussian_line_batch.h, height_density_batch.h and spherical_density_batch.h, relative
+/// 2e-6, other media by their own closed forms. For one thread.
 class MediumDepths {
   public:
     explicit MediumDepths(const SceneMedia& media, MediumExtent extent = MediumExtent::any);
 
-    glm::dvec3 operator()(const glm::dvec3& origin, const glm::dvec3& direction, double distance);
+    /// out[i] of `count` rays of unit directions.
+    void operator()(std::size_t count, const glm::dvec3* origins, const glm::dvec3* directions,
+                    const double* distances, glm::dvec3* out);
+    /// Of one.
+    glm::dvec3 operator()(const glm::dvec3& origin, const glm::dvec3& direction, double distance) {
+        glm::dvec3 depth(0);
+        (*this)(1, &origin, &direction, &distance, &depth);
+        return depth;
+    }
 
   private:
     /// Of more Gaussians than these only those beside the ray count, by their tree.
     static constexpr std::size_t kMostBlobs = 512;
 
+    void add_blobs(std::size_t count, const glm::dvec3* origins, const glm::dvec3* directions,
+                   const double* distances, glm::dvec3* out);
+
+    struct Layer {
+        ExponentialHeightDensity shape;
+        glm::dvec3 colour;
+    };
+    struct Atmosphere {
+        SphericalExponentialDensity shape;
+        glm::dvec3 colour;
+    };
+    glm::dvec3 uniform_{0};
+    std::vector<Layer> layers_;
+    std::vector<Atmosphere> atmospheres_;
     std::vector<const MediumPart*> parts_;  ///< others
     std::vector<GaussianBlob> blobs_;
-    std::vector<float> scale_, amplitude_, rho_, place_, end_;
+    std::vector<float> columns_[5];
 };
 
 }  // namespace airlight

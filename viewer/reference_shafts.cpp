@@ -8,6 +8,7 @@
 
 #include "medium/quadrature.h"
 #include "medium/shafts.h"
+#include "viewer/cell_walk.h"
 #include "viewer/reference.h"
 
 namespace airlight {
@@ -18,35 +19,6 @@ constexpr double kLongest = 1e4, kLeastDistance = 1e-3;  // [m]
 double least(const glm::dvec3& v) {
     return std::min({v.x, v.y, v.z});
 }
-
-// The cells of particles along a ray, in their order.
-class CellWalk {
-  public:
-    CellWalk(const glm::dvec3& origin, const glm::dvec3& direction, double cell_size) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const double at = std::floor(origin[axis] / cell_size);
-            cell[axis] = static_cast<std::int64_t>(at);
-            step_[axis] = direction[axis] < 0 ? -1 : 1;
-            delta_[axis] = cell_size / std::abs(direction[axis]);
-            next_[axis] =
-                ((at + (direction[axis] > 0 ? 1 : 0)) * cell_size - origin[axis]) / direction[axis];
-            if (direction[axis] == 0) next_[axis] = std::numeric_limits<double>::infinity();
-        }
-    }
-    /// Where the ray leaves the cell.
-    double end() const { return least(next_); }
-    void advance() {
-        const int axis = next_.x <= next_.y && next_.x <= next_.z ? 0 : next_.y <= next_.z ? 1 : 2;
-        cell[axis] += step_[axis];
-        next_[axis] += delta_[axis];
-    }
-
-    std::int64_t cell[3];
-
-  private:
-    std::int64_t step_[3];
-    glm::dvec3 delta_, next_;
-};
 
 }  // namespace
 

@@ -39,6 +39,12 @@ class MediumPart {
     const PhaseFunction& phase() const { return phase_; }
     const std::optional<SceneBox>& bounds() const { return bounds_; }
     bool is_gaussian() const { return gaussian_; }
+    /// Its shape where it has one for all channels and is no sum of Gaussians, to be scaled by
+    /// colour(); else null.
+    const Density* single_shape() const {
+        return !gaussian_ && shapes_.size() == 1 ? &shapes_[0].parts[0] : nullptr;
+    }
+    const glm::dvec3& colour() const { return colour_; }
     /// Of Gaussians, else none.
     const std::vector<GaussianBlob>& blobs() const { return blobs_; }
 

@@ -263,6 +263,101 @@ TEST_F(FastTest, GaussiansBeforeAMapAreTheReferences) {
     EXPECT_GT(Both(world, plan, coarse, 16).difference, 0);
 }
 
+SceneMedium gaussians() {
+    SceneMedium medium;
+    medium.kind =
+        SceneGaussians{{{{0, 1, 0}, 1.1, 0.5}, {{1, 1.4, -1}, 0.8, 0.4}}, {}, glm::dvec3(0.9)};
+    return medium;
+}
+
+// The ladder of medium/gaussian_airlight_method.h: points converge, the point of [Zhou07] does not,
+// worst beside the lamp.
+TEST_F(FastTest, EveryRungOfGaussiansKeepsToItsError) {
+    Scene scene = lamp_in_fog();
+    scene.media = {uniform(glm::dvec3(0.02), glm::dvec3(0)), gaussians()};
+    const World world(scene);
+    const Plan plan = plan_of_everything(world);
+    const auto difference = [&](FastGaussians method) {
+        FastMethods methods;
+        methods.gaussians = method;
+        return Both(world, plan, methods, 1).difference;
+    };
+    EXPECT_LT(difference(FastGaussians::fogshop), 1);
+    EXPECT_GT(difference(FastGaussians::fogshop), 1e-3);
+    EXPECT_LT(difference(FastGaussians::centroid), 1);
+    EXPECT_LT(difference(FastGaussians::mixed_gl8), 0.06);
+    EXPECT_LT(difference(FastGaussians::mixed_gl16), 0.015);
+    EXPECT_LT(difference(FastGaussians::mixed_gl32), 3e-4);
+    Plan without = plan;
+    without[Effect::airlight_gaussians].runs = false;
+    const FastPicture picture = render_fast(world, without, {}, {});
+    EXPECT_EQ(picture.counts[Effect::airlight_gaussians], 0u);
+    EXPECT_GT(picture.counts[Effect::airlight_point], 0u);
+}
+
+// A lamp over a layer of fog, 1.1e-3 where a ray passes beside it, and the sun over an atmosphere,
+// by 32 points; depths are floats'.
+TEST_F(FastTest, LayersAndAtmospheresAreTheReferences) {
+    Scene scene = lamp_in_fog();
+    SceneMedium layer;
+    layer.kind = SceneExponentialHeight{{0.1, 0.12, 0.15}, 1.5, glm::dvec3(0.9)};
+    layer.phase.type = PhaseType::henyey_greenstein;
+    layer.phase.g = 0.4;
+    scene.media = {layer};
+    EXPECT_LT(Both(World(scene), plan_of_everything(World(scene)), {}, 1).difference, 3e-3);
+    SceneMedium air;
+    air.kind =
+        SceneAtmosphere{{0, -6371000, 0}, 6371000, {6e-6, 1.3e-5, 3e-5}, 8000, glm::dvec3(1)};
+    air.phase.type = PhaseType::rayleigh;
+    scene.media = {air};
+    scene.camera.position = {0, 100, 0};
+    scene.camera.look_at = {0, 2000, 10000};
+    scene.lights = {{{6e9, 5e9, 9e9}, glm::dvec3(3e20)}};
+    EXPECT_LT(Both(World(scene), plan_of_everything(World(scene)), {}, 1).difference, 1e-4);
+}
+
+// Eight points on a piece of a ray against adaptive quadrature, which sees the kinks where light
+// comes through another face.
+TEST_F(FastTest, SlabsAreTheReferencesWithAndWithoutRefraction) {
+    for (const double ior : {1.0, 1.3}) {
+        Scene scene = lamp_in_fog();
+        SceneMedium slab;
+        slab.kind =
+            SceneSlab{{{-1, 0, -0.6}, {1, 1.6, 0.6}}, ior, {0.6, 0.4, 0.3}, {0.1, 0.1, 0.2}};
+        scene.media = {slab};
+        scene.lights[0].position = {-1.5, 2.5, 1.5};
+        const World world(scene);
+        const Plan plan = plan_of_everything(world);
+        const Both both(world, plan, {}, 4);
+        EXPECT_NEAR(both.mean, 1, 3e-3) << ior;
+        EXPECT_LT(both.difference, 0.05) << ior;
+        EXPECT_GT(both.fast.counts[Effect::slab], 0u);
+        FastMethods straight;
+        straight.slab = FastSlab::straight;
+        const double error = std::abs(Both(world, plan, straight, 4).mean - 1);
+        if (ior == 1) {
+            EXPECT_LT(error, 3e-3);
+        } else {
+            EXPECT_GT(error, 6e-3);
+        }
+    }
+}
+
+TEST_F(FastTest, ParticlesAreTheReferences) {
+    Scene scene = lamp_in_fog();
+    scene.shafts = SceneShafts{};
+    add_ball(scene, {0.6, 1.2, 0}, LambertMaterial{glm::dvec3(0)});
+    const World world(scene);
+    const Plan plan = plan_of_everything(world);
+    const Both both(world, plan, {}, 2);
+    EXPECT_NEAR(both.mean, 1, 5e-3);
+    Plan without = plan;
+    without[Effect::particles].runs = false;
+    const FastPicture picture = render_fast(world, without, {}, {});
+    EXPECT_EQ(picture.counts[Effect::particles], 0u);
+    EXPECT_LT(mean_of(picture.image), 0.9 * mean_of(both.fast.image));
+}
+
 TEST_F(FastTest, WhatIsAbsentCostsNothing) {
     Scene scene = lamp_in_fog();
     scene.media.clear();
