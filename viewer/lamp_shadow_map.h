@@ -30,6 +30,8 @@ class LampShadowMap {
              std::vector<RayInterval>& parts) const;
 
   private:
+    bool sees(const glm::vec3& from_lamp, float scale) const;
+
     glm::dvec3 lamp_{0};
     int size_ = 0;
     std::vector<float> depths_;  ///< (side, row, column)

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/fast_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "viewer/camera.h"
+#include "viewer/fast.h"
+#include "viewer/reference.h"
+
+namespace airlight {
+namespace {
+
+constexpr int kWidth = 24, kHeight = 14, kSamples = 4;
+constexpr double kShare = 0.5;           // of the tolerance, which methods have together
+constexpr double kRoom = 0.25;           // of the finest rung's error
+constexpr double kOfRootMeanSquare = 3;  // a pixel's error over the root mean square of all
+constexpr double kFloatError = 1e-5;     // of closed forms in float
+
+std::vector<glm::dvec3> sketch_directions(const World& world) {
+    const Camera& camera = world.scene().camera;
+    const glm::dmat3 axes = camera_axes(camera);
+    std::vector<glm::dvec3> directions;
+    for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+            directions.push_back(camera_direction(camera, axes, kWidth, kHeight, x + 0.5, y + 0.5));
+        }
+    }
+    return directions;
+}
+
+double largest_difference(const glm::dvec3& a, const glm::dvec3& b) {
+    return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+}
+
+// What the reference says of a sketch: means, and the variance of these means.
+struct Truth {
+    std::vector<LayeredRadiance> means;
+    std::vector<std::array<double, kRadianceLayerCount>> variances;
+
+    Truth(const World& world, const Plan& plan, const std::vector<glm::dvec3>& directions) {
+        Plan whole = plan;
+        // Objects shade each other whether baked or not.
+        if (world.scene().environment && !world.scene().objects.empty()) {
+            whole[Effect::shadow_prt].runs = true;
+        }
+        ReferenceOptions options;
+        options.quadrature = std::max(1e-4, 0.1 * plan.tolerance);
+        const ReferenceRenderer renderer(world, whole, options);
+        ReferenceCounts counts;
+        means.resize(directions.size());
+        variances.resize(directions.size());
+        for (std::size_t i = 0; i < directions.size(); ++i) {
+            LayeredRadiance samples[kSamples];
+            for (int k = 0; k < kSamples; ++k) {
+                SampleStream stream(i, static_cast<std::uint64_t>(k));
+                samples[k] =
+                    renderer.layers(world.scene().camera.position, directions[i], stream, counts);
+            }
+            for (std::size_t l = 0; l < kRadianceLayerCount; ++l) {
+                glm::dvec3 mean(0);
+                for (const LayeredRadiance& sample : samples) mean += sample.layers[l];
+                mean /= double(kSamples);
+                means[i].layers[l] = mean;
+                double squares = 0;
+                for (const LayeredRadiance& sample : samples) {
+                    squares += std::pow(largest_difference(sample.layers[l], mean), 2);
+                }
+                variances[i][l] = squares / (kSamples * (kSamples - 1));
+            }
+        }
+    }
+
+    /// Of a pixel's layer, estimated as choose_fast_methods() says, doubled.
+    double error(const std::vector<LayeredRadiance>& fast, RadianceLayer layer) const {
+        const auto l = static_cast<std::size_t>(layer);
+        double most = 0, squares = 0, noise = 0;
+        for (std::size_t i = 0; i < fast.size(); ++i) {
+            const double d = largest_difference(fast[i].layers[l], means[i].layers[l]);
+            most = std::max(most, d);
+            squares += d * d;
+            noise += variances[i][l];
+        }
+        if (noise == 0) return 2 * most;
+        // What is under the samples' scatter cannot be told from it.
+        const double left = std::max(0.25 * noise, squares - noise) / double(fast.size());
+        return std::min(2 * most, 2 * kOfRootMeanSquare * std::sqrt(left));
+    }
+};
+
+class Chooser {
+  public:
+    Chooser(const World& world, Plan& plan)
+        : world_(world),
+          plan_(plan),
+          directions_(sketch_directions(world)),
+          finest_(sketch(methods_)),
+          truth_(world, plan, directions_) {
+        for (const LayeredRadiance& pixel : finest_)
+            level_ = std::max(level_, largest(pixel.total()));
+        const auto count = std::count_if(std::begin(kWithMethods), std::end(kWithMethods),
+                                         [&](Effect effect) { return plan.runs(effect); });
+        share_ = kShare * plan.tolerance / std::max<double>(1, double(count));
+    }
+
+    void choose() {
+        const bool everywhere = world_.media().everywhere().has_value();
+        const double lamps = double(world_.scene().lights.size());
+        double blobs = 0;
+        for (const MediumPart& part : world_.media().parts()) blobs += double(part.blobs().size());
+        // Measured nanoseconds for a node of a ray, and others below likewise.
+        const double node = 60 + 25 * blobs;
+        closed(Effect::attenuation, "closed form", 10 + 4 * blobs);
+        closed(Effect::density_height, "closed form", 0);
+        closed(Effect::density_atmosphere, "closed form", 0);
+        closed(Effect::brdf_glossy, "lobe", 20);
+        if (everywhere) {
+            closed(Effect::airlight_point, "closed form", 40 * lamps);
+        } else {
+            pick(Effect::airlight_point, {RadianceLayer::airlight_point}, kFastAirlights,
+                 &FastMethods::airlight, {8 * node * lamps, 16 * node * lamps, 32 * node * lamps});
+        }
+        pick(Effect::shafts,
+             {RadianceLayer::airlight_point, RadianceLayer::airlight_gaussians,
+              RadianceLayer::particles},
+             kFastShafts, &FastMethods::shafts,
+             {0, 150 * lamps, 280 * lamps, 540 * lamps, 2500 * lamps});
+        pick(Effect::airlight_gaussians, {RadianceLayer::airlight_gaussians}, kFastGaussians,
+             &FastMethods::gaussians,
+             {300 * blobs * lamps, 300 * blobs * lamps, 8 * node * lamps, 16 * node * lamps,
+              32 * node * lamps});
+        if (everywhere) {
+            plain(Effect::airlight_environment, RadianceLayer::airlight_environment, "foggy map",
+                  60);
+        } else {
+            pick(Effect::airlight_environment, {RadianceLayer::airlight_environment},
+                 kFastMapAirlights, &FastMethods::map_airlight, {150, 300, 600, 1200});
+        }
+        choose_surface_point(60 * lamps);
+        pick(Effect::surface_environment, {RadianceLayer::surface_environment}, kFastSurfaceMaps,
+             &FastMethods::surface_map, {40, 40, 40, 40, 40});
+        pick(Effect::particles, {RadianceLayer::particles}, kFastParticles, &FastMethods::particles,
+             {5000 * lamps, 9000 * lamps, 25000 * lamps});
+        pick(Effect::slab, {RadianceLayer::airlight_point}, kFastSlabs, &FastMethods::slab,
+             {3000 * lamps, 8000 * lamps});
+    }
+
+  private:
+    static constexpr Effect kWithMethods[] = {
+        Effect::airlight_point,     Effect::shafts,
+        Effect::airlight_gaussians, Effect::airlight_environment,
+        Effect::surface_point,      Effect::surface_environment,
+        Effect::particles,          Effect::slab,
+    };
+
+    std::vector<LayeredRadiance> sketch(const FastMethods& methods) const {
+        const FastRenderer renderer(world_, plan_, methods);
+        std::vector<LayeredRadiance> pixels(directions_.size());
+        FastCounts counts;
+        renderer.shade(directions_.data(), directions_.size(), pixels.data(), counts);
+        return pixels;
+    }
+
+    void closed(Effect effect, const char* rung, double cost) {
+        if (!plan_.runs(effect)) return;
+        plan_[effect].rung = rung;
+        plan_[effect].bound += kFloatError;
+        plan_[effect].cost = cost;
+    }
+
+    void write(Effect effect, std::string_view rung, double error, double cost) {
+        EffectChoice& choice = plan_[effect];
+        choice.rung = std::string(rung);
+        choice.bound += error;
+        choice.bound_kind = BoundKind::estimated;
+        choice.cost = cost;
+    }
+
+    void plain(Effect effect, RadianceLayer layer, const char* rung, double cost) {
+        if (!plan_.runs(effect)) return;
+        write(effect, rung, over_level(truth_.error(finest_, layer)), cost);
+    }
+
+    double over_level(double error) const { return level_ > 0 ? error / level_ : 0; }
+
+    // Tables of the rungs stand in the order of their cost.
+    template <class Method, std::size_t count>
+    void pick(Effect effect, std::initializer_list<RadianceLayer> layers,
+              const NamedMethod<Method> (&rungs)[count], Method FastMethods::*field,
+              const std::array<double, count>& costs) {
+        if (!plan_.runs(effect)) return;
+        double base = 0;
+        for (const RadianceLayer layer : layers) {
+            base = std::max(base, over_level(truth_.error(finest_, layer)));
+        }
+        const double room = std::max(share_ - base, kRoom * base);
+        for (std::size_t i = 0; i < count; ++i) {
+            FastMethods methods = finest_methods_;
+            methods.*field = rungs[i].method;
+            double error = 0;
+            if (i + 1 < count) {
+                const std::vector<LayeredRadiance> pixels = sketch(methods);
+                for (std::size_t k = 0; k < pixels.size(); ++k) {
+                    glm::dvec3 a(0), b(0);
+                    for (const RadianceLayer layer : layers) {
+                        a += pixels[k][layer];
+                        b += finest_[k][layer];
+                    }
+                    error = std::max(error, 2 * over_level(largest_difference(a, b)));
+                }
+            }
+            if (i + 1 < count && !(error <= room)) continue;
+            methods_.*field = rungs[i].method;
+            write(effect, rungs[i].name, base + error, costs[i]);
+            return;
+        }
+    }
+
+    void choose_surface_point(double cost) {
+        if (!plan_.runs(Effect::surface_point)) return;
+        const double with = over_level(truth_.error(finest_, RadianceLayer::surface_point));
+        std::vector<LayeredRadiance> dark(directions_.size());
+        const double without = over_level(truth_.error(dark, RadianceLayer::surface_point));
+        const bool none = without <= std::max(with, share_);
+        const FastSurfacePoint method = none ? FastSurfacePoint::none : FastSurfacePoint::gn_table;
+        write(Effect::surface_point, method_name(kFastSurfacePoints, method), none ? without : with,
+              none ? 0 : cost);
+    }
+
+    const World& world_;
+    Plan& plan_;
+    FastMethods methods_, finest_methods_;
+    std::vector<glm::dvec3> directions_;
+    std::vector<LayeredRadiance> finest_;
+    Truth truth_;
+    double level_ = 0, share_ = 0;
+};
+
+template <class Method, std::size_t count>
+void read(const Plan& plan, Effect effect, const NamedMethod<Method> (&rungs)[count],
+          Method& method) {
+    if (const auto named = method_from_name(rungs, plan[effect].rung)) method = *named;
+}
+
+}  // namespace
+
+void choose_fast_methods(const World& world, Plan& plan) {
+    Chooser(world, plan).choose();
+}
+
+FastMethods fast_methods(const Plan& plan) {
+    FastMethods methods;
+    read(plan, Effect::airlight_point, kFastAirlights, methods.airlight);
+    read(plan, Effect::shafts, kFastShafts, methods.shafts);
+    read(plan, Effect::airlight_gaussians, kFastGaussians, methods.gaussians);
+    read(plan, Effect::airlight_environment, kFastMapAirlights, methods.map_airlight);
+    read(plan, Effect::surface_point, kFastSurfacePoints, methods.surface_point);
+    read(plan, Effect::surface_environment, kFastSurfaceMaps, methods.surface_map);
+    read(plan, Effect::particles, kFastParticles, methods.particles);
+    read(plan, Effect::slab, kFastSlabs, methods.slab);
+    return methods;
+}
+
+}  // namespace airlight
