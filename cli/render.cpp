@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/progress.h"
+#include "viewer/fast_choice.h"
 #include "viewer/fast_picture.h"
 #include "viewer/reference_picture.h"
 #include "viewer/scene_file.h"
@@ -77,7 +78,8 @@ void run_fast(const RenderRequest& request, const World& world, const Plan& plan
         ProgressOptions drawing;
         drawing.quiet = common.verbosity < 0;
         Progress progress("render", std::uint64_t(width) * std::uint64_t(height), drawing);
-        picture = render_fast(world, plan, {}, options, common.max_memory, &progress);
+        picture =
+            render_fast(world, plan, fast_methods(plan), options, common.max_memory, &progress);
     }
     const double render_seconds = seconds_since(start);
     write_picture(request.output, picture.image, request.exposure, common.force);

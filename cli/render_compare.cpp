@@ -15,6 +15,7 @@
 #include "core/memory.h"
 #include "core/progress.h"
 #include "envmap/sheet.h"
+#include "viewer/fast_choice.h"
 #include "viewer/fast_picture.h"
 #include "viewer/picture_compare.h"
 #include "viewer/scene_file.h"
@@ -95,7 +96,7 @@ void render_and_compare(const CompareRequest& request, const CommonOptions& comm
     start = std::chrono::steady_clock::now();
     {
         Progress progress("fast", pixels, drawing);
-        picture = render_fast(world, plan, {}, fast, common.max_memory, &progress);
+        picture = render_fast(world, plan, fast_methods(plan), fast, common.max_memory, &progress);
     }
     const double fast_seconds = seconds_since(start);
 

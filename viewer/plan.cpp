@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "viewer/fast_choice.h"
 #include "viewer/plan_cost.h"
 #include "viewer/plan_level.h"
 #include "viewer/view_bounds.h"
@@ -493,7 +494,11 @@ double Plan::bound() const {
 }
 
 Plan make_plan(const World& world, const PlanOptions& options) {
-    return Planner(world, options).make();
+    Plan plan = Planner(world, options).make();
+    if (options.engine == Engine::fast && options.bounds && !options.all) {
+        choose_fast_methods(world, plan);
+    }
+    return plan;
 }
 
 }  // namespace airlight
