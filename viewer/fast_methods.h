@@ -1,5 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // The methods of the fast engine, effect by effect.
+//
+// Nanoseconds of one thread for a ray of view and a lamp, and errors of a pixel over the brightest,
+// root mean square, on data/scenes; the noise of the reference's samples is in the latter:
+//     effect                rung          ns            error
+//     airlight.point        closed form   40            5.5e-6 of each ray
+//                           mixed-gl8     2700          3.4e-4 (air-ground)
+//                           mixed-gl16    3800          6e-5
+//                           mixed-gl32    6000          5e-7
+//     shafts                unshadowed    0             1e-3 (spheres), 2e-2 (room from outside)
+//                           map16 … 64    250 … 1000    5e-4 … 2e-4
+//                           intervals     700 … 3000    2e-5, float
+//     airlight.gaussians    fogshop       1200 (3)      3e-2 (halo), 3e-1 (shaft, 68 blobs)
+//                           mixed-gl8     3200 (3)      1e-2 (steam), 6e-2 (shaft)
+//                           mixed-gl16    4300 (3)      3e-2 (shaft)
+//                           mixed-gl32    6700 (3)      3e-2 (shaft: noise)
+//     airlight.environment  march4 … 32   150 … 1200    2e-2 (terrain), 5e-2 (city)
+//     surface.point         gn-table      60            1e-2: noise; +180 % of its light in a room
+//     surface.environment   order3 … 32   40            1e-2 (terrain), unshadowed
+//     particles             cells1 … 6    4000 … 25000  2e-4 with cells6
+//     slab                  straight      3000          2e-2
+//                           refracted     8000          1.3e-3
 #pragma once
 
 #include "core/method_names.h"
