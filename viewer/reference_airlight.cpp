@@ -76,7 +76,9 @@ glm::dvec3 ReferenceRenderer::airlight_of(std::size_t lamp, Scatterers which,
     LineQuadratureOptions quadrature;
     quadrature.relative = options_.quadrature;
     quadrature.absolute = absolute * height / intensity;
-    std::vector<double> breaks = media.marks(origin, direction, distance, &light.position);
+    std::vector<double> breaks =
+        media.marks(origin, direction, distance, &light.position,
+                    options_.quadrature < 1e-3 ? SceneMedia::kFineMarks : SceneMedia::kWideMarks);
     if (foot > 0 && foot < distance) {
         breaks.insert(std::upper_bound(breaks.begin(), breaks.end(), foot), foot);
     }

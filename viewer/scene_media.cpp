@@ -11,8 +11,8 @@
 namespace airlight {
 namespace {
 
-// In units of a Gaussian's 1 / scale: rules of 15 nodes between marks 2 apart see all of it.
-constexpr double kMarkSteps[] = {-3, -1, 1, 3}, kMarkWidth = 0.9;
+// In units of a Gaussian's 1 / scale.
+constexpr double kMarkSteps[] = {-3, -1, 1, 3};
 constexpr double kDenseRadius = 6;  // beyond, it is under e^-36 of itself
 
 struct PartBuilder {
@@ -144,7 +144,7 @@ glm::dvec3 MediumPart::depth(const glm::dvec3& origin, const glm::dvec3& directi
 }
 
 void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-                      std::vector<Mark>& marks) const {
+                      double spacing, std::vector<Mark>& marks) const {
     const auto add = [&](double at, double width = 0) {
         if (at > 0 && at < distance) marks.push_back({at, width});
     };
@@ -159,7 +159,7 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
         const double off = blob.scale * pass.rho_perp;
         if (!(off < kDenseRadius)) return;
         for (const double step : kMarkSteps) {
-            add(pass.m_proj + step / blob.scale, kMarkWidth / blob.scale);
+            add(pass.m_proj + step / blob.scale, spacing / blob.scale);
         }
     };
     if (tree_) {
@@ -178,7 +178,8 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
                 height = shell->scale_height;
                 deepest = std::max(0.0, glm::dot(shell->center - origin, direction));
             }
-            for (double step = height / 4; height > 0 && step < 5000 * height; step *= 4) {
+            for (double step = height / 4; height > 0 && step < 5000 * height;
+                 step *= spacing < SceneMedia::kWideMarks ? 4 : 16) {
                 add(deepest - step);
                 add(deepest + step);
             }
@@ -189,7 +190,7 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
 // In the plane of ray and lamp, x along the ray from its point next to the lamp and y towards the
 // lamp, which is at (0, h): what is at (x, y) shades the ray at x h / (h - y).
 void MediumPart::mark_shadows(const glm::dvec3& lamp, const glm::dvec3& origin,
-                              const glm::dvec3& direction, double distance,
+                              const glm::dvec3& direction, double distance, double spacing,
                               std::vector<Mark>& marks) const {
     if (!gaussian_) return;
     const double foot = glm::dot(lamp - origin, direction);
@@ -206,7 +207,7 @@ void MediumPart::mark_shadows(const glm::dvec3& lamp, const glm::dvec3& origin,
         const double at = foot + (glm::dot(direction, to) - foot) * stretch;
         for (const double step : kMarkSteps) {
             const double t = at + step * stretch / blob.scale;
-            if (t > 0 && t < distance) marks.push_back({t, kMarkWidth * stretch / blob.scale});
+            if (t > 0 && t < distance) marks.push_back({t, spacing * stretch / blob.scale});
         }
     };
     if (tree_) {
@@ -268,11 +269,12 @@ glm::dvec3 SceneMedia::transmittance(const glm::dvec3& origin, const glm::dvec3&
 }
 
 std::vector<double> SceneMedia::marks(const glm::dvec3& origin, const glm::dvec3& direction,
-                                      double distance, const glm::dvec3* lamp) const {
+                                      double distance, const glm::dvec3* lamp,
+                                      double spacing) const {
     std::vector<MediumPart::Mark> all;
     for (const MediumPart& part : parts_) {
-        part.mark(origin, direction, distance, all);
-        if (lamp) part.mark_shadows(*lamp, origin, direction, distance, all);
+        part.mark(origin, direction, distance, spacing, all);
+        if (lamp) part.mark_shadows(*lamp, origin, direction, distance, spacing, all);
     }
     std::sort(all.begin(), all.end(), [](const MediumPart::Mark& a, const MediumPart::Mark& b) {
         return a.at != b.at ? a.at < b.at : a.width < b.width;
