@@ -62,6 +62,9 @@ void FastRenderer::trace(FastBlock& block, FastCounts& counts) const {
         if (ray.meets) {
             ray.hit = world_.hit_at(found[i].mesh, found[i].triangle, found[i].u, found[i].v,
                                     block.origin, ray.direction);
+            ray.triangle = found[i].triangle;
+            ray.u = found[i].u;
+            ray.v = found[i].v;
             ray.from = world_.lifted(ray.hit);
             ray.distance = ray.hit.distance;
         }

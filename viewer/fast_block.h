@@ -43,6 +43,9 @@ struct FastRay {
     bool meets = false;   ///< it ends at a surface: `hit`
     bool bent = false;    ///< it met slabs: direction and distance are those of its last piece
     WorldHit hit;
+    /// Place in the hit triangle, as World::hit_at() takes it.
+    std::uint32_t triangle = 0;
+    float u = 0, v = 0;
     glm::dvec3 from{0};           ///< the hit, lifted off the surface
     glm::dvec3 transmittance{1};  ///< to where it ends
 };

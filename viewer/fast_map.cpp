@@ -114,6 +114,12 @@ void FastMap::build_surfaces(FastCounts& counts) {
     for (std::size_t i = 0; i < world_.scene().objects.size(); ++i) {
         const SurfaceLobes lobes = lobes_of(world_.material(i));
         materials_.push_back(lobes);
+        baked_.emplace_back();
+        if (plan_.runs(Effect::product_dot) || plan_.runs(Effect::product_triple)) {
+            baked_.back() =
+                FastTransfer(world_, plan_, i, lobes, bands_, endless_bands(distance, kMapOrder));
+            if (!baked_.back().diffuse.empty()) ++counts.tables;
+        }
         diffuse_lobe_.push_back(lobe_number(0));
         const bool glossy = lobes.glossy() && plan_.objects[i].glossy;
         glossy_lobe_.push_back(glossy ? lobe_number(std::max(lobes.exponent, 1e-3)) : kNoLobe);
@@ -201,11 +207,27 @@ void FastMap::light_surfaces(FastBlock& block, LayeredRadiance* out, FastCounts&
         const SurfaceLobes& lobes = materials_[object];
         const EnvironmentSampler& map = *world_.sampler();
         glm::dvec3 sent(0);
-        if (lobes.diffuse != glm::dvec3(0)) {
+        const FastTransfer& baked = baked_[object];
+        // A bent ray's place in the triangle is not kept.
+        const bool by_vertex = !baked.diffuse.empty() && !ray.bent;
+        const auto between = [&](const std::vector<glm::vec3>& values) {
+            const glm::uvec3 corner = world_.meshes()[object].triangles[ray.triangle];
+            return glm::dvec3((1 - ray.u - ray.v) * values[corner.x] + ray.u * values[corner.y] +
+                              ray.v * values[corner.z]) *
+                   transmittance_of(glm::dvec3(depth));
+        };
+        if (by_vertex) {
+            sent += between(baked.diffuse);
+            ++counts[Effect::product_dot];
+            ++counts[Effect::shadow_prt];
+        } else if (lobes.diffuse != glm::dvec3(0)) {
             sent +=
                 lobes.diffuse * of_lobe(diffuse_lobe_[object], map.to_map(ray.hit.normal), depth);
         }
-        if (glossy_lobe_[object] != kNoLobe) {
+        if (by_vertex && !baked.specular.empty()) {
+            sent += between(baked.specular);
+            ++counts[Effect::product_triple];
+        } else if (glossy_lobe_[object] != kNoLobe) {
             const glm::dvec3 mirrored =
                 ray.direction - 2 * glm::dot(ray.hit.normal, ray.direction) * ray.hit.normal;
             sent += lobes.specular * of_lobe(glossy_lobe_[object], map.to_map(mirrored), depth);

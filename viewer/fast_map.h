@@ -25,6 +25,7 @@
 #include "envmap/image.h"
 #include "viewer/fast_block.h"
 #include "viewer/fast_methods.h"
+#include "viewer/fast_transfer.h"
 #include "viewer/medium_grid.h"
 #include "viewer/plan.h"
 #include "viewer/sphere_table.h"
@@ -77,6 +78,7 @@ class FastMap {
     std::vector<SphereTable> paths_;   ///< radiance over 1 - e^-T, of rays that end there
     std::vector<SphereTable> source_;  ///< the map by limited media's phases over its mean
 
+    std::vector<FastTransfer> baked_;                      ///< by object
     std::vector<SurfaceLobes> materials_;                  ///< by object
     std::vector<std::size_t> diffuse_lobe_, glossy_lobe_;  ///< likewise
     std::vector<double> depth_levels_;                     ///< of limited media, ascending from 0
