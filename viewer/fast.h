@@ -7,17 +7,17 @@
 //     lamps in other media        Gauss-Legendre rules along the ray, or [Zhou07] eq. 8 to 17
 //     media onto surfaces         [Sun05] eq. 17 and 18 by tables of G_n (medium/surface_batch.h),
 //                                 with the mean extinction towards the lamp ([Zhou07] sec. 4.1)
-//     the map                     viewer/fast_map.h
+//     the map                     viewer/fast_map.h, on baked objects viewer/fast_transfer.h
 //     slabs                       rays of view bent as the reference has it, eight points within
 //     particles                   a few points in each cell
 //
 // Beside the reference, rays per CPU second on one thread, as ratios (bench/fast_bench.cpp at
-// 64 x 36, line integrals to each scene's 1e-2 tolerance): with the methods that plans choose 16 to
-// 59 where Gaussians, atmospheres or slabs are (city 10, with 70 Gaussians and a layer), 20 with
-// uniform fog before a map, 2 to 6 with shadows in uniform fog; without these 12 to 45; 2 to 5 in
-// clear air, where both trace the same rays. Media are not shaded in surface light, nor surfaces
-// under a map without a .prt file: that is what errs most, +4 to +11 % of the mean of pictures
-// there, and all of the difference in a room whose lamp stands outside (data/scenes/shafts.json).
+// 64 x 36, line integrals to each scene's tolerance of 1e-2), with the methods that plans choose:
+// 8 to 59 where Gaussians, atmospheres or slabs are, 20 with uniform fog before a map, 1.5 to 6
+// with shadows in uniform fog; without these, as [Sun05] has it, 12 to 45; 2 to 5 in clear air,
+// where both trace the same rays. Objects do not shade the media that light surfaces, nor surfaces
+// under a map without a .prt file: that errs most, by 3 to 11 % of the mean of pictures with a map,
+// and by most of that light in a room whose lamp stands outside (data/scenes/shafts.json).
 //
 // Rays and shadow rays of neighbouring pixels are traced in packets. What the plan leaves out is
 // neither built nor evaluated; counts show it.

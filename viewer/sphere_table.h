@@ -11,7 +11,7 @@ namespace airlight {
 
 /// The sphere folded out of an octahedron onto a square of nodes, with linear interpolation
 /// between them in both directions. Continuous: nodes of the square's border that are the same
-/// direction hold the same value. 6 ns a look-up.
+/// direction hold the same value.
 class SphereTable {
   public:
     SphereTable() = default;
