@@ -24,6 +24,10 @@ Place find_place(const double* sums, std::size_t intervals, double x) {
     return {index, size > 0 ? std::clamp((wanted - sums[index]) / size, 0.0, 1.0) : 0.5};
 }
 
+double mean(const glm::dvec3& colour) {
+    return (colour.x + colour.y + colour.z) / 3;
+}
+
 }  // namespace
 
 EnvironmentSampler::EnvironmentSampler(Image map, double rotation, double scale)
@@ -41,10 +45,12 @@ EnvironmentSampler::EnvironmentSampler(Image map, double rotation, double scale)
     }
 }
 
+glm::dvec3 EnvironmentSampler::pixel(int row, int column) const {
+    return {map_.at(row, column, 0), map_.at(row, column, 1), map_.at(row, column, 2)};
+}
+
 double EnvironmentSampler::pixel_power(int row, int column) const {
-    const double sum =
-        double(map_.at(row, column, 0)) + map_.at(row, column, 1) + map_.at(row, column, 2);
-    return sum / 3 * pixel_solid_angle(row, map_.width, map_.height);
+    return mean(pixel(row, column)) * pixel_solid_angle(row, map_.width, map_.height);
 }
 
 glm::dvec3 EnvironmentSampler::to_map(const glm::dvec3& d) const {
@@ -55,24 +61,28 @@ glm::dvec3 EnvironmentSampler::to_world(const glm::dvec3& d) const {
     return {cosine_ * d.x + sine_ * d.z, d.y, cosine_ * d.z - sine_ * d.x};
 }
 
-glm::dvec3 EnvironmentSampler::radiance(const glm::dvec3& direction) const {
+EnvironmentSample EnvironmentSampler::at(const glm::dvec3& direction) const {
     const glm::dvec3 d = to_map(direction);
     const LatLongPixel p = pixel_of({d.x, d.y, d.z}, map_.width, map_.height);
-    return scale_ * glm::dvec3(map_.at(p.row, p.column, 0), map_.at(p.row, p.column, 1),
-                               map_.at(p.row, p.column, 2));
+    EnvironmentSample sample;
+    sample.direction = direction;
+    const glm::dvec3 value = pixel(p.row, p.column);
+    sample.radiance = scale_ * value;
+    if (rows_.back() > 0) sample.pdf = mean(value) / rows_.back();
+    return sample;
+}
+
+glm::dvec3 EnvironmentSampler::radiance(const glm::dvec3& direction) const {
+    return at(direction).radiance;
+}
+
+double EnvironmentSampler::pdf(const glm::dvec3& direction) const {
+    return at(direction).pdf;
 }
 
 double EnvironmentSampler::brightest() const {
     const auto most = std::max_element(map_.pixels.begin(), map_.pixels.end());
     return most == map_.pixels.end() ? 0 : scale_ * double(*most);
-}
-
-double EnvironmentSampler::pdf(const glm::dvec3& direction) const {
-    if (!(rows_.back() > 0)) return 0;
-    const glm::dvec3 d = to_map(direction);
-    const LatLongPixel p = pixel_of({d.x, d.y, d.z}, map_.width, map_.height);
-    return pixel_power(p.row, p.column) / rows_.back() /
-           pixel_solid_angle(p.row, map_.width, map_.height);
 }
 
 EnvironmentSample EnvironmentSampler::sample(double x, double y) const {
@@ -89,9 +99,9 @@ EnvironmentSample EnvironmentSampler::sample(double x, double y) const {
     const double across = std::sqrt(std::max(0.0, (1 - y_axis) * (1 + y_axis)));
     const double phi = 2 * kPi * (0.5 - (double(column.index) + column.fraction) / double(width));
     sample.direction = to_world({across * std::sin(phi), y_axis, across * std::cos(phi)});
-    const int r = static_cast<int>(row.index), c = static_cast<int>(column.index);
-    sample.radiance = scale_ * glm::dvec3(map_.at(r, c, 0), map_.at(r, c, 1), map_.at(r, c, 2));
-    sample.pdf = pixel_power(r, c) / rows_.back() / pixel_solid_angle(r, map_.width, map_.height);
+    const glm::dvec3 value = pixel(static_cast<int>(row.index), static_cast<int>(column.index));
+    sample.radiance = scale_ * value;
+    sample.pdf = mean(value) / rows_.back();
     return sample;
 }
 

@@ -26,6 +26,8 @@ class EnvironmentSampler {
     /// x, y in [0, 1) uniform. A black map gives a pdf of 0.
     EnvironmentSample sample(double x, double y) const;
     double pdf(const glm::dvec3& direction) const;
+    /// Both in one look.
+    EnvironmentSample at(const glm::dvec3& direction) const;
     /// The largest radiance of a pixel and channel.
     double brightest() const;
     /// At least the integral of the radiance over all directions, in any channel.
@@ -37,6 +39,7 @@ class EnvironmentSampler {
 
   private:
     glm::dvec3 to_world(const glm::dvec3& direction) const;
+    glm::dvec3 pixel(int row, int column) const;    ///< unscaled
     double pixel_power(int row, int column) const;  ///< mean radiance times solid angle, unscaled
 
     Image map_;

@@ -51,15 +51,13 @@ ReferenceRenderer::ReferenceRenderer(const World& world, const ReferenceOptions&
 
 ReferenceRenderer::ReferenceRenderer(const World& world, const Plan& plan,
                                      const ReferenceOptions& options)
-    : world_(world), plan_(plan), options_(options) {
+    : world_(world),
+      plan_(plan),
+      options_(options),
+      in_media_(plan.everything || !world.media().empty() || !world.slabs().empty()) {
     for (std::size_t i = 0; i < plan_.objects.size(); ++i) {
         materials_.push_back(planned(world.material(i), plan_.objects[i], plan_.everything));
     }
-}
-
-// Whether there is anything in the air, or the plan does not ask.
-bool ReferenceRenderer::in_media() const {
-    return plan_.everything || !world_.media().empty() || !world_.slabs().empty();
 }
 
 bool ReferenceRenderer::sees(const glm::dvec3& from, const glm::dvec3& to,
@@ -85,9 +83,8 @@ glm::dvec3 ReferenceRenderer::surface_of_map(const WorldHit& hit, const glm::dve
         if (plan_.runs(Effect::shadow_prt) && !sees_map(from, direction, counts)) {
             return glm::dvec3(0);
         }
-        return world_.environment(direction) *
-               transmittance_of(
-                   straight_depth(from, direction, world_.scene().environment->distance, counts));
+        return straight_transmittance(from, direction, world_.scene().environment->distance,
+                                      counts);
     };
     // Two ways to draw a direction, each weighed by the sum of both densities.
     const double x = stream.next(), y = stream.next();
@@ -97,12 +94,13 @@ glm::dvec3 ReferenceRenderer::surface_of_map(const WorldHit& hit, const glm::dve
     if (light.pdf > 0) {
         const glm::dvec3 f = reflect(material, hit.normal, to_viewer, light.direction);
         const double pdf = light.pdf + lobe_pdf(material, hit.normal, to_viewer, light.direction);
-        if (largest(f) > 0) sum += f * arriving(light.direction) / pdf;
+        if (largest(f) > 0) sum += f * light.radiance * arriving(light.direction) / pdf;
     }
     if (lobe.pdf > 0) {
         const glm::dvec3 f = reflect(material, hit.normal, to_viewer, lobe.direction);
-        if (largest(f) > 0) {
-            sum += f * arriving(lobe.direction) / (lobe.pdf + sampler->pdf(lobe.direction));
+        const EnvironmentSample sky = sampler->at(lobe.direction);
+        if (largest(f * sky.radiance) > 0) {
+            sum += f * sky.radiance * arriving(lobe.direction) / (lobe.pdf + sky.pdf);
         }
     }
     return sum;
@@ -113,7 +111,7 @@ glm::dvec3 ReferenceRenderer::surface_of_map(const WorldHit& hit, const glm::dve
 void ReferenceRenderer::surface_of_media(const WorldHit& hit, const glm::dvec3& to_viewer,
                                          const glm::dvec3& from, const SampleStream& stream,
                                          ReferenceCounts& counts, LayeredRadiance& light) const {
-    if (!in_media()) return;
+    if (!in_media_) return;
     const SurfaceMaterial& material = materials_[hit.object];
     const auto path_to = [&](const glm::dvec3& direction) {
         RayPath path = follow_ray(world_, from, direction, attenuates());
@@ -162,7 +160,7 @@ void ReferenceRenderer::surface(const WorldHit& hit, const glm::dvec3& to_viewer
             if (!(largest(f) > 0) || !sees(from, lamp.position, counts)) continue;
             light[RadianceLayer::direct] +=
                 f * lamp.intensity / (r * r) *
-                transmittance_of(straight_depth(hit.position, to_light / r, r, counts));
+                straight_transmittance(hit.position, to_light / r, r, counts);
         }
         if (plan_.runs(Effect::surface_environment)) {
             SampleStream of_map = stream.of(kMapOnSurfaces);
@@ -175,10 +173,19 @@ void ReferenceRenderer::surface(const WorldHit& hit, const glm::dvec3& to_viewer
 
 LayeredRadiance ReferenceRenderer::layers(const glm::dvec3& origin, const glm::dvec3& direction,
                                           SampleStream& stream, ReferenceCounts& counts) const {
+    LayeredRadiance light;
+    if (!in_media_) {
+        ++counts.rays;
+        if (const auto hit = world_.trace(origin, direction, kInfinite)) {
+            surface(*hit, -direction, stream, counts, light);
+        } else {
+            light[RadianceLayer::direct] = world_.environment(direction);
+        }
+        return light;
+    }
     const RayPath path = follow_ray(world_, origin, direction, attenuates());
     counts.rays += path.rays;
     if (attenuates()) counts.attenuations += path.pieces.size();
-    LayeredRadiance light;
     if (largest(path.throughput) > 0) {
         const glm::dvec3& last = path.pieces.back().direction;
         if (path.hit) {

@@ -153,7 +153,6 @@ class ReferenceRenderer {
     };
     LampAirlight airlight_along(std::size_t lamp, const LampUse& use, const RayPath& path,
                                 double absolute, ReferenceCounts& counts) const;
-    bool in_media() const;
     glm::dvec3 particles_along(const RayPiece& piece, ReferenceCounts& counts) const;
     glm::dvec3 straight_depth(const glm::dvec3& x, const glm::dvec3& direction, double distance,
                               ReferenceCounts& counts) const;
@@ -186,11 +185,14 @@ class ReferenceRenderer {
     bool sees(const glm::dvec3& from, const glm::dvec3& to, ReferenceCounts& counts) const;
     bool sees_map(const glm::dvec3& from, const glm::dvec3& direction,
                   ReferenceCounts& counts) const;
+    glm::dvec3 straight_transmittance(const glm::dvec3& x, const glm::dvec3& direction,
+                                      double distance, ReferenceCounts& counts) const;
     bool attenuates() const { return plan_.runs(Effect::attenuation); }
 
     const World& world_;
     Plan plan_;
     ReferenceOptions options_;
+    bool in_media_;  ///< there is something in the air, or the plan does not ask
     std::vector<SurfaceMaterial> materials_;  ///< of the objects, as the plan has them
 };
 

@@ -120,8 +120,7 @@ glm::dvec3 ReferenceRenderer::airlight_of_map(const RayPiece& piece, const Envir
     if (!(largest(sent_on) > 0)) return glm::dvec3(0);
     if (options_.shadows_in_media && !sees_map(x, light.direction, counts)) return glm::dvec3(0);
     return sent * sent_on *
-           transmittance_of(
-               straight_depth(x, light.direction, world_.scene().environment->distance, counts));
+           straight_transmittance(x, light.direction, world_.scene().environment->distance, counts);
 }
 
 // A direction of the map is a point light at the map's distance D from where the path begins, of
@@ -179,7 +178,7 @@ glm::dvec3 ReferenceRenderer::airlight_of_direction(const RayPath& path, const g
 glm::dvec3 ReferenceRenderer::map_along(const RayPath& path, SampleStream& stream,
                                         ReferenceCounts& counts) const {
     const EnvironmentSampler* const sampler = world_.sampler();
-    if (!sampler || !in_media()) return glm::dvec3(0);
+    if (!sampler || !in_media_) return glm::dvec3(0);
     const double x = stream.next(), y = stream.next(), choice = stream.next();
     const EnvironmentSample light = sampler->sample(x, y);
     ++counts.airlights;
@@ -217,7 +216,7 @@ glm::dvec3 ReferenceRenderer::surface_of_scattered_map(const WorldHit& hit,
                                                        const glm::dvec3& from, SampleStream stream,
                                                        ReferenceCounts& counts) const {
     const EnvironmentSampler* const sampler = world_.sampler();
-    if (!sampler || !in_media()) return glm::dvec3(0);
+    if (!sampler || !in_media_) return glm::dvec3(0);
     const SurfaceMaterial& material = materials_[hit.object];
     const LobeSample lobe = sample_lobe(material, hit.normal, to_viewer, stream);
     const double x = stream.next(), y = stream.next(), choice = stream.next();

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 #include "core/error.h"
@@ -24,7 +23,7 @@ struct PixelSum {
     void add(const glm::dvec3& sample) {
         ++count;
         const glm::dvec3 before = sample - mean;
-        mean += before / double(count);
+        mean += before * (1 / double(count));
         squares += before * (sample - mean);
     }
     double error() const {
@@ -46,39 +45,11 @@ void check(const ReferencePictureOptions& options) {
     }
 }
 
-using RadianceSampler = std::function<LayeredRadiance(
-    const glm::dvec3& origin, const glm::dvec3& direction, SampleStream&, ReferenceCounts&)>;
-
-RadianceSampler sampler_of(const World& world, const Plan& plan,
-                           const ReferencePictureOptions& options) {
-    if (options.scattering == Scattering::single) {
-        return [renderer = ReferenceRenderer(world, plan, options.reference)](
-                   const glm::dvec3& origin, const glm::dvec3& direction, SampleStream& stream,
-                   ReferenceCounts& counts) {
-            return renderer.layers(origin, direction, stream, counts);
-        };
-    }
-    return [tracer = PathTracer(world, options.paths)](
-               const glm::dvec3& origin, const glm::dvec3& direction, SampleStream& stream,
-               ReferenceCounts& counts) {
-        LayeredRadiance light;  // paths mix all layers
-        light[RadianceLayer::direct] = tracer.radiance(origin, direction, stream, counts);
-        return light;
-    };
-}
-
-}  // namespace
-
-ReferencePicture render_reference(const World& world, const ReferencePictureOptions& options,
-                                  std::size_t max_memory, Progress* progress) {
-    PlanOptions holds;
-    holds.bounds = false;
-    return render_reference(world, make_plan(world, holds), options, max_memory, progress);
-}
-
-ReferencePicture render_reference(const World& world, const Plan& plan,
-                                  const ReferencePictureOptions& options, std::size_t max_memory,
-                                  Progress* progress) {
+// `radiance` takes origin, direction, stream and counts and gives LayeredRadiance.
+template <class Radiance>
+ReferencePicture draw(const World& world, const Radiance& radiance,
+                      const ReferencePictureOptions& options, std::size_t max_memory,
+                      Progress* progress) {
     check(options);
     const Camera& camera = world.scene().camera;
     const int width = options.width > 0 ? options.width : camera.width;
@@ -90,7 +61,6 @@ ReferencePicture render_reference(const World& world, const Plan& plan,
     require_memory(checked_multiply(pixels, sizeof(PixelSum) + 12 + of_layers, "the picture"),
                    max_memory, "the picture", world.scene().path);
     const glm::dmat3 axes = camera_axes(camera);
-    const RadianceSampler radiance = sampler_of(world, plan, options);
     std::vector<PixelSum> sums(pixels);
     std::vector<LayeredRadiance> layers(options.layers ? pixels : 0);
     ReferencePicture result;
@@ -173,6 +143,36 @@ ReferencePicture render_reference(const World& world, const Plan& plan,
         result.unfinished += noisy ? 1 : 0;
     }
     return result;
+}
+
+}  // namespace
+
+ReferencePicture render_reference(const World& world, const ReferencePictureOptions& options,
+                                  std::size_t max_memory, Progress* progress) {
+    PlanOptions holds;
+    holds.bounds = false;
+    return render_reference(world, make_plan(world, holds), options, max_memory, progress);
+}
+
+ReferencePicture render_reference(const World& world, const Plan& plan,
+                                  const ReferencePictureOptions& options, std::size_t max_memory,
+                                  Progress* progress) {
+    if (options.scattering == Scattering::multiple) {
+        const PathTracer tracer(world, options.paths);
+        const auto radiance = [&](const glm::dvec3& origin, const glm::dvec3& direction,
+                                  SampleStream& stream, ReferenceCounts& counts) {
+            LayeredRadiance light;  // paths mix all layers
+            light[RadianceLayer::direct] = tracer.radiance(origin, direction, stream, counts);
+            return light;
+        };
+        return draw(world, radiance, options, max_memory, progress);
+    }
+    const ReferenceRenderer renderer(world, plan, options.reference);
+    const auto radiance = [&](const glm::dvec3& origin, const glm::dvec3& direction,
+                              SampleStream& stream, ReferenceCounts& counts) {
+        return renderer.layers(origin, direction, stream, counts);
+    };
+    return draw(world, radiance, options, max_memory, progress);
 }
 
 }  // namespace airlight

@@ -24,6 +24,13 @@ glm::dvec3 ReferenceRenderer::straight_depth(const glm::dvec3& x, const glm::dve
            world_.slabs().depth(x, direction, distance);
 }
 
+glm::dvec3 ReferenceRenderer::straight_transmittance(const glm::dvec3& x,
+                                                     const glm::dvec3& direction, double distance,
+                                                     ReferenceCounts& counts) const {
+    if (!attenuates()) return glm::dvec3(1);
+    return transmittance_of(straight_depth(x, direction, distance, counts));
+}
+
 glm::dvec3 ReferenceRenderer::sent_in_slab(const Slab& slab, const glm::dvec3& x,
                                            const glm::dvec3& incoming,
                                            const glm::dvec3& outgoing) const {

@@ -47,7 +47,7 @@ class SampleStream {
         return bits ^ (bits >> 30);
     }
     static double fraction(std::uint64_t bits) {
-        return std::ldexp(static_cast<double>(bits >> 11), -53);
+        return 0x1p-53 * static_cast<double>(bits >> 11);
     }
 
     std::uint64_t pixel_, index_;
