@@ -90,22 +90,31 @@ void compare_shares(const std::vector<std::string>& files, int rounds) {
     }
 }
 
-// A renderer that knows nothing of plans and media: rays, the map, materials.
+// A renderer that knows nothing of plans and media: rays, the map, materials, a picture and its
+// noise.
 double plain_loop(const World& world) {
     const Camera& camera = world.scene().camera;
     const glm::dmat3 axes = camera_axes(camera);
     const EnvironmentSampler& sampler = *world.sampler();
     constexpr double kFar = std::numeric_limits<double>::infinity();
     glm::dvec3 all(0);
+    Image image(kWidth, kHeight, 3);
+    double noise = 0;
     for (int i = 0; i < kWidth * kHeight; ++i) {
-        glm::dvec3 pixel(0);
+        glm::dvec3 sum(0), squares(0);
         for (int k = 0; k < kSamples; ++k) {
+            glm::dvec3 pixel(0);
             SampleStream stream(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(k));
             const double x = i % kWidth + stream.next(), y = i / kWidth + stream.next();
             const glm::dvec3 direction = camera_direction(camera, axes, kWidth, kHeight, x, y);
             const auto hit = world.trace(camera.position, direction, kFar);
+            const auto keep = [&] {
+                sum += pixel;
+                squares += pixel * pixel;
+            };
             if (!hit) {
-                pixel += world.environment(direction);
+                pixel = world.environment(direction);
+                keep();
                 continue;
             }
             const glm::dvec3 from = world.lifted(*hit);
@@ -126,10 +135,16 @@ double plain_loop(const World& world) {
                 const EnvironmentSample sky = sampler.at(lobe.direction);
                 add(sky, lobe.pdf + sky.pdf);
             }
+            keep();
         }
-        all += pixel;
+        const glm::dvec3 mean = sum / double(kSamples);
+        for (int c = 0; c < 3; ++c) {
+            image.pixels[static_cast<std::size_t>(3 * i + c)] = static_cast<float>(mean[c]);
+        }
+        noise += largest(squares / double(kSamples) - mean * mean);
+        all += sum;
     }
-    return largest(all) / (kWidth * kHeight * kSamples);
+    return noise >= 0 ? largest(all) / (kWidth * kHeight * kSamples) : double(image.pixels[0]);
 }
 
 void compare_with_plain_loop(const std::string& file, int rounds) {
