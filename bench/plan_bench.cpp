@@ -72,8 +72,7 @@ void compare_shares(const std::vector<std::string>& files, int rounds) {
         Plan plan;
         std::vector<double> whole;
         for (int round = 0; round < rounds; ++round) whole.push_back(draw(scene, {}, &plan));
-        double expected = plan.base_cost;
-        for (const EffectChoice& choice : plan.effects) expected += choice.cost;
+        const double expected = plan.cost();
         const double rays = double(kWidth) * kHeight * kSamples;
         fmt::print("{}: {:.2f} us a ray, expected {:.2f}\n", file, 1e6 * median(whole) / rays,
                    1e-3 * expected);
@@ -82,10 +81,13 @@ void compare_shares(const std::vector<std::string>& files, int rounds) {
             PlanOptions without;
             without.only.remove(effect);
             std::vector<double> rest;
-            for (int round = 0; round < rounds; ++round) rest.push_back(draw(scene, without));
+            Plan less;
+            for (int round = 0; round < rounds; ++round) {
+                rest.push_back(draw(scene, without, &less));
+            }
             fmt::print("    {:22} {:5.1f} %, expected {:5.1f} %\n", name,
                        100 * (1 - median(rest) / median(whole)),
-                       100 * plan[effect].cost / expected);
+                       100 * (1 - less.cost() / expected));
         }
     }
 }

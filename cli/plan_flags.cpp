@@ -28,12 +28,6 @@ std::string percent(double share) {
     return share > 0 && share < 0.005 ? "<1 %" : fmt::format("{:.0f} %", 100 * share);
 }
 
-double whole_cost(const Plan& plan) {
-    double sum = plan.base_cost;
-    for (const EffectChoice& choice : plan.effects) sum += choice.cost;
-    return sum;
-}
-
 std::string bound_text(const EffectChoice& choice) {
     if (choice.bound == 0) return "-";
     return fmt::format("{:.1e}{}", choice.bound,
@@ -93,7 +87,7 @@ std::string to_lines(const std::string& path, const Plan& plan) {
                                    method_name(kEngines, plan.engine), plan.tolerance);
     const std::string row = "{:21} {:4} {:>6} {:>13}  {}\n";
     text += fmt::format(fmt::runtime(row), "effect", "runs", "cost", "error below", "why and how");
-    const double whole = whole_cost(plan);
+    const double whole = plan.cost();
     for (const auto& [effect, name] : kEffects) {
         const EffectChoice& choice = plan[effect];
         text +=
@@ -137,7 +131,7 @@ nlohmann::ordered_json to_json(const Plan& plan) {
                                      {"tolerance", plan.tolerance},
                                      {"level", plan.level},
                                      {"bound", plan.bound()},
-                                     {"nanoseconds_per_ray", whole_cost(plan)},
+                                     {"nanoseconds_per_ray", plan.cost()},
                                      {"quadrature", plan.quadrature},
                                      {"media_left_out", plan.media_left_out},
                                      {"blobs_left_out", plan.blobs_left_out}};
@@ -150,7 +144,7 @@ nlohmann::ordered_json to_json(const Plan& plan) {
             {"method", choice.rung},
             {"bound", choice.bound},
             {"proven", choice.bound_kind == BoundKind::proven},
-            {"cost_share", choice.cost / whole_cost(plan)},
+            {"cost_share", choice.cost / plan.cost()},
         };
     }
     report["effects"] = effects;

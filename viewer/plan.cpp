@@ -69,6 +69,12 @@ double Plan::bound() const {
     return sum;
 }
 
+double Plan::cost() const {
+    double sum = base_cost;
+    for (const EffectChoice& choice : effects) sum += choice.cost;
+    return sum;
+}
+
 Plan make_plan(const World& world, const PlanOptions& options) {
     const Scene& scene = world.scene();
     Plan plan;

@@ -76,6 +76,8 @@ struct Plan {
     bool runs(Effect effect) const { return (*this)[effect].runs; }
     /// Sum of the bounds of all effects.
     double bound() const;
+    /// Expected nanoseconds of CPU time for a ray of view.
+    double cost() const;
 };
 
 struct PlanOptions {

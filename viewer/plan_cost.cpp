@@ -11,16 +11,16 @@
 namespace airlight {
 namespace {
 
-// Nanoseconds of CPU time on one core with AVX-512, as bench/plan_bench.cpp measures them.
-constexpr double kRay = 450;             // traced, the hit interpolated
-constexpr double kShadowRay = 250;       // of any kind
-constexpr double kReflect = 40;          // a diffuse surface
-constexpr double kLobe = 90;             // what a lobe takes beside it
-constexpr double kClosedForm = 190;      // airlight of a lamp, one channel, isotropic
-constexpr double kClosedPhase = 600;     // with any other phase function
-constexpr double kLitParts = 500;        // exact borders of shadows, and for each doubling of
-constexpr double kLitPerDoubling = 120;  // the triangles
-constexpr double kMapSample = 350;       // a direction drawn from the map
+// Nanoseconds of CPU time on one core with AVX-512 (bench/plan_bench.cpp --shares).
+constexpr double kRay = 200;            // traced, the hit interpolated
+constexpr double kShadowRay = 120;      // of any kind
+constexpr double kReflect = 25;         // a diffuse surface
+constexpr double kLobe = 40;            // what a lobe takes beside it
+constexpr double kClosedForm = 190;     // airlight of a lamp, one channel, isotropic
+constexpr double kClosedPhase = 600;    // with any other phase function
+constexpr double kLitParts = 400;       // exact borders of shadows, and for the triangles times
+constexpr double kLitPerTriangle = 25;  // the root of their number
+constexpr double kMapSample = 200;      // a direction drawn from the map
 
 double hit_fraction(const World& world) {
     const Camera& camera = world.scene().camera;
@@ -42,7 +42,8 @@ double hit_fraction(const World& world) {
 // Of all media: the optical depth of a way and the density of a point.
 struct MediaCost {
     double depth = 0, density = 0, closed_form = 0;
-    double breaks = 1;  // parts that a quadrature begins with
+    double breaks = 1;  // parts that a quadrature begins with, but for Gaussians'
+    bool blobs = false, endless = false;
 
     explicit MediaCost(const std::vector<SceneMedium>& media) {
         for (const SceneMedium& medium : media) {
@@ -52,14 +53,15 @@ struct MediaCost {
                                              12 * std::log2(2 + double(gaussians->blobs.size())));
                 depth += 50 * near;
                 density += 15 * near;
-                breaks += near;
+                blobs = true;
             } else if (std::holds_alternative<SceneAtmosphere>(medium.kind)) {
                 depth += 350;
                 density += 30;
-                breaks += 8;
+                breaks += 6;
             } else if (std::holds_alternative<SceneUniform>(medium.kind)) {
                 depth += 6;
                 density += 4;
+                endless = endless || !medium.bounds;
                 const auto& uniform = std::get<SceneUniform>(medium.kind);
                 const glm::dvec3 extinction = uniform.scattering + uniform.absorption;
                 const bool grey = extinction.x == extinction.y && extinction.x == extinction.z;
@@ -69,7 +71,7 @@ struct MediaCost {
             } else if (!std::holds_alternative<SceneSlab>(medium.kind)) {
                 depth += 60;
                 density += 20;
-                breaks += 4;
+                breaks += 3;
             }
         }
     }
@@ -82,11 +84,12 @@ void estimate_costs(const World& world, Plan& plan) {
     const double lamps = double(scene.lights.size());
     const double hit = scene.objects.empty() ? 0 : hit_fraction(world);
     const MediaCost media(plan.media);
-    const double lit = kLitParts + kLitPerDoubling * std::log2(2 + double(world.triangles()));
+    const double lit = kLitParts + kLitPerTriangle * std::sqrt(double(world.triangles()));
     const bool closed =
         SceneMedia(plan.media).everywhere() && !plan.everything && !plan.runs(Effect::slab);
-    // Panels of 15 points, halved once for every three digits.
-    const double panels = media.breaks * (1 - 0.33 * std::log10(plan.quadrature) / 1.0);
+    // Panels of 15 points; marks of Gaussians are thinned out, so that their number matters little.
+    const double panels =
+        (media.breaks + (media.blobs ? 3.5 : 0)) * (plan.quadrature < 1e-3 ? 1.8 : 1);
     const double integral =
         closed ? media.closed_form : 15 * panels * (2 * media.depth + media.density + 60);
     const auto count = [&](bool LampPlan::*flag) {
@@ -108,8 +111,11 @@ void estimate_costs(const World& world, Plan& plan) {
     set(Effect::surface_point,
         hit * 0.6 * surface *
             (kRay + kReflect + (point > 0 ? integral : 0) + (gaussians > 0 ? integral : 0)));
-    set(Effect::shafts, shafts * lit * (1 + 0.6 * hit * (surface > 0 ? 1 : 0)));
-    const double map_point = kMapSample + kShadowRay + 2 * media.depth + media.density;
+    const double along_rays = point + gaussians > 0 ? 1 : 0, on_surfaces = surface > 0 ? 0.6 : 0;
+    set(Effect::shafts, shafts * lit * (along_rays + on_surfaces * hit));
+    // Endless media are looked at along eight directions of the map.
+    const double map_point =
+        (media.endless ? 8 : 1) * (kMapSample + kShadowRay + 2 * media.depth + media.density);
     set(Effect::airlight_environment, map_point);
     const bool by_media = plan.runs(Effect::airlight_environment);
     set(Effect::surface_environment,
