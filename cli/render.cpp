@@ -52,10 +52,8 @@ void check(const RenderRequest& request, const CommonOptions& common) {
                     "is scattered once",
                     "--scattering multiple");
     }
-    if (request.compare &&
-        (request.options.scattering == Scattering::multiple || request.options.tolerance > 0)) {
-        throw Error(ErrorCode::usage, "takes neither --scattering multiple nor --tolerance",
-                    "--compare");
+    if (request.compare && request.options.scattering == Scattering::multiple) {
+        throw Error(ErrorCode::usage, "takes no --scattering multiple", "--compare");
     }
     if (request.bounces && request.options.scattering == Scattering::single) {
         throw Error(ErrorCode::usage, "is for --scattering multiple", "--bounces");
@@ -109,9 +107,10 @@ void run_fast(const RenderRequest& request, const World& world, const Plan& plan
 void run_render(const RenderRequest& request, const CommonOptions& common) {
     check(request, common);
     if (request.compare) {
-        render_and_compare(
-            {request.inputs[0], request.output, request.options, request.plan, request.exposure},
-            common);
+        CompareRequest comparison{request.inputs[0], request.output, request.options, request.plan,
+                                  request.exposure};
+        comparison.plan.tolerance = request.options.tolerance;
+        render_and_compare(comparison, common);
         return;
     }
     auto start = std::chrono::steady_clock::now();
@@ -237,13 +236,15 @@ Command declare_render(CLI::App& program) {
              [=](const std::string& text) {
                  request->options.samples = parse_integer(text, "--samples", 1, kLargestSamples);
              });
-    add_flag(command, "--tolerance", "E",
-             "Noise, relative to the brightest pixel, at which a pixel is done (default: take all "
-             "samples), or the picture, with multiple scattering; integrals along rays are made to "
-             "a tenth of it or of the scene's",
-             [=](const std::string& text) {
-                 request->options.tolerance = parse_number(text, "--tolerance", {1e-9, 1});
-             });
+    add_flag(
+        command, "--tolerance", "E",
+        "Noise, relative to the brightest pixel, at which a pixel is done (default: take all "
+        "samples), or the picture, with multiple scattering; with --engine fast and --compare, "
+        "the error that the plan aims at; integrals along rays are made to a tenth of it or of "
+        "the scene's",
+        [=](const std::string& text) {
+            request->options.tolerance = parse_number(text, "--tolerance", {1e-9, 1});
+        });
     add_flag(command, "--exposure", "EV", "Stops brighter than automatic, for .png (default: 0)",
              [=](const std::string& text) {
                  request->exposure = parse_number(text, "--exposure", {-30, 30});

@@ -67,7 +67,13 @@ TEST(RenderCommand, BothEnginesAreComparedRayByRay) {
     }
     EXPECT_FALSE(std::filesystem::exists(out));
     EXPECT_EQ(run({"render", scene, "-o", out, "--compare"}).status, 1) << "they exist";
-    EXPECT_EQ(run({"render", scene, "-o", out, "--compare", "--tolerance", "0.1"}).status, 2);
+    EXPECT_EQ(run({"render", scene, "-o", out, "--compare", "--scattering", "multiple"}).status, 2);
+    // A tolerance is the plan's; all samples are taken.
+    const Outcome loose = run({"render", scene, "-o", out, "--force", "--compare", "--samples", "8",
+                               "--tolerance", "0.1", "--json"});
+    EXPECT_EQ(loose.status, 0) << loose.err;
+    EXPECT_EQ(nlohmann::json::parse(loose.out)["plan"]["tolerance"], 0.1);
+    EXPECT_EQ(nlohmann::json::parse(loose.out)["samples"], report["samples"]);
 }
 
 TEST(RenderCommand, EffectsAreLeftOutAsAsked) {
