@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "viewer/camera.h"
@@ -13,7 +14,10 @@
 namespace airlight {
 namespace {
 
-constexpr int kWidth = 24, kHeight = 14, kSamples = 4;
+constexpr int kWidth = 24, kHeight = 14;
+// Samples of the reference, as many as its expected cost allows.
+constexpr int kLeastSamples = 4, kMostSamples = 64;
+constexpr double kSampling = 1e8;        // nanoseconds of all
 constexpr double kShare = 0.5;           // of the tolerance, which methods have together
 constexpr double kRoom = 0.25;           // of the finest rung's error
 constexpr double kOfRootMeanSquare = 3;  // a pixel's error over the root mean square of all
@@ -49,26 +53,30 @@ struct Truth {
         ReferenceOptions options;
         options.quadrature = std::max(1e-4, 0.1 * plan.tolerance);
         const ReferenceRenderer renderer(world, whole, options);
+        const double affordable =
+            kSampling / (std::max(1.0, plan.cost()) * double(directions.size()));
+        const int count =
+            static_cast<int>(std::clamp(affordable, double(kLeastSamples), double(kMostSamples)));
+        std::vector<LayeredRadiance> samples(static_cast<std::size_t>(count));
         ReferenceCounts counts;
         means.resize(directions.size());
         variances.resize(directions.size());
         for (std::size_t i = 0; i < directions.size(); ++i) {
-            LayeredRadiance samples[kSamples];
-            for (int k = 0; k < kSamples; ++k) {
-                SampleStream stream(i, static_cast<std::uint64_t>(k));
+            for (std::size_t k = 0; k < samples.size(); ++k) {
+                SampleStream stream(i, k);
                 samples[k] =
                     renderer.layers(world.scene().camera.position, directions[i], stream, counts);
             }
             for (std::size_t l = 0; l < kRadianceLayerCount; ++l) {
                 glm::dvec3 mean(0);
                 for (const LayeredRadiance& sample : samples) mean += sample.layers[l];
-                mean /= double(kSamples);
+                mean /= double(count);
                 means[i].layers[l] = mean;
                 double squares = 0;
                 for (const LayeredRadiance& sample : samples) {
                     squares += std::pow(largest_difference(sample.layers[l], mean), 2);
                 }
-                variances[i][l] = squares / (kSamples * (kSamples - 1));
+                variances[i][l] = squares / (double(count) * (count - 1));
             }
         }
     }
@@ -96,7 +104,7 @@ class Chooser {
         : world_(world),
           plan_(plan),
           directions_(sketch_directions(world)),
-          finest_(sketch(methods_)),
+          finest_(sketch(methods_, true, true)),
           truth_(world, plan, directions_) {
         for (const LayeredRadiance& pixel : finest_)
             level_ = std::max(level_, largest(pixel.total()));
@@ -155,8 +163,13 @@ class Chooser {
         Effect::particles,          Effect::slab,
     };
 
-    std::vector<LayeredRadiance> sketch(const FastMethods& methods) const {
-        const FastRenderer renderer(world_, plan_, methods);
+    // Tables of surfaces are built where their layers are looked at.
+    std::vector<LayeredRadiance> sketch(FastMethods methods, bool lamps_on_surfaces,
+                                        bool map_on_surfaces) const {
+        Plan part = plan_;
+        if (!lamps_on_surfaces) methods.surface_point = FastSurfacePoint::none;
+        if (!map_on_surfaces) part[Effect::surface_environment].runs = false;
+        const FastRenderer renderer(world_, part, methods);
         std::vector<LayeredRadiance> pixels(directions_.size());
         FastCounts counts;
         renderer.shade(directions_.data(), directions_.size(), pixels.data(), counts);
@@ -180,7 +193,14 @@ class Chooser {
 
     void plain(Effect effect, RadianceLayer layer, const char* rung, double cost) {
         if (!plan_.runs(effect)) return;
-        write(effect, rung, over_level(truth_.error(finest_, layer)), cost);
+        const double error = over_level(truth_.error(finest_, layer));
+        write(effect, rung, charge(layer) ? error : 0, cost);
+    }
+
+    // The error of a layer goes to the first effect that makes it; whether this is the first.
+    bool charge(RadianceLayer layer) {
+        const auto l = static_cast<std::size_t>(layer);
+        return !std::exchange(charged_[l], true);
     }
 
     double over_level(double error) const { return level_ > 0 ? error / level_ : 0; }
@@ -191,17 +211,24 @@ class Chooser {
               const NamedMethod<Method> (&rungs)[count], Method FastMethods::*field,
               const std::array<double, count>& costs) {
         if (!plan_.runs(effect)) return;
-        double base = 0;
+        double base = 0, own = 0;
         for (const RadianceLayer layer : layers) {
-            base = std::max(base, over_level(truth_.error(finest_, layer)));
+            const double error = over_level(truth_.error(finest_, layer));
+            base = std::max(base, error);
+            own += charge(layer) ? error : 0;
         }
         const double room = std::max(share_ - base, kRoom * base);
-        for (std::size_t i = 0; i < count; ++i) {
+        const auto looks_at = [&](RadianceLayer layer) {
+            return std::find(layers.begin(), layers.end(), layer) != layers.end();
+        };
+        for (std::size_t i = plan_.everything ? count - 1 : 0; i < count; ++i) {
             FastMethods methods = finest_methods_;
             methods.*field = rungs[i].method;
             double error = 0;
             if (i + 1 < count) {
-                const std::vector<LayeredRadiance> pixels = sketch(methods);
+                const std::vector<LayeredRadiance> pixels =
+                    sketch(methods, looks_at(RadianceLayer::surface_point),
+                           looks_at(RadianceLayer::surface_environment));
                 for (std::size_t k = 0; k < pixels.size(); ++k) {
                     glm::dvec3 a(0), b(0);
                     for (const RadianceLayer layer : layers) {
@@ -213,7 +240,7 @@ class Chooser {
             }
             if (i + 1 < count && !(error <= room)) continue;
             methods_.*field = rungs[i].method;
-            write(effect, rungs[i].name, base + error, costs[i]);
+            write(effect, rungs[i].name, own + error, costs[i]);
             return;
         }
     }
@@ -221,13 +248,20 @@ class Chooser {
     void choose_surface_point(double cost) {
         if (!plan_.runs(Effect::surface_point)) return;
         const double with = over_level(truth_.error(finest_, RadianceLayer::surface_point));
-        std::vector<LayeredRadiance> dark(directions_.size());
+        const std::vector<LayeredRadiance> dark(directions_.size());
         const double without = over_level(truth_.error(dark, RadianceLayer::surface_point));
-        const bool none = without <= std::max(with, share_);
-        const FastSurfacePoint method = none ? FastSurfacePoint::none : FastSurfacePoint::gn_table;
-        write(Effect::surface_point, method_name(kFastSurfacePoints, method), none ? without : with,
-              none ? 0 : cost);
+        if (!plan_.everything && without <= std::max(with, share_)) {
+            methods_.surface_point = FastSurfacePoint::none;
+            write(Effect::surface_point, method_name(kFastSurfacePoints, methods_.surface_point),
+                  without, 0);
+            return;
+        }
+        pick(Effect::surface_point, {RadianceLayer::surface_point}, kGnTables,
+             &FastMethods::surface_point, {cost, cost, cost});
     }
+
+    static constexpr NamedMethod<FastSurfacePoint> kGnTables[] = {
+        kFastSurfacePoints[1], kFastSurfacePoints[2], kFastSurfacePoints[3]};
 
     const World& world_;
     Plan& plan_;
@@ -236,6 +270,7 @@ class Chooser {
     std::vector<LayeredRadiance> finest_;
     Truth truth_;
     double level_ = 0, share_ = 0;
+    std::array<bool, kRadianceLayerCount> charged_ = {};
 };
 
 template <class Method, std::size_t count>

@@ -13,15 +13,27 @@
 namespace airlight {
 namespace {
 
-// Of G_n's tables (medium/surface_batch.h): the exponents, and points on a side of a table that
-// errs by 1e-4.
+// Of G_n's tables (medium/surface_batch.h).
 constexpr double kLeastExponent = 1, kLargestExponent = 1000;
-constexpr int kLobeTable = 48;
 // fogshop takes the square of their number to build.
 constexpr std::size_t kMostBlobs = 512;
 
 double clamped_exponent(double exponent) {
     return std::clamp(exponent, kLeastExponent, kLargestExponent);
+}
+
+// Points on a side of a table.
+int size_of(FastSurfacePoint method) {
+    switch (method) {
+        case FastSurfacePoint::gn16:
+            return 16;
+        case FastSurfacePoint::gn24:
+            return 24;
+        case FastSurfacePoint::none:
+        case FastSurfacePoint::gn48:
+            break;
+    }
+    return 48;
 }
 
 int shadow_map_size(const Scene& scene) {
@@ -48,8 +60,9 @@ FastLamps::FastLamps(const World& world, const Plan& plan, const FastMethods& me
                            [&](const LampPlan& lamp) { return lamp.*part; });
     };
     if (plan.runs(Effect::surface_point) && wanted(&LampPlan::surface) &&
-        methods.surface_point == FastSurfacePoint::gn_table && !scene.objects.empty()) {
-        lobes_.push_back(std::make_unique<SurfaceBatchTable>(1, kLobeTable));
+        methods.surface_point != FastSurfacePoint::none && !scene.objects.empty()) {
+        const int size = size_of(methods.surface_point);
+        lobes_.push_back(std::make_unique<SurfaceBatchTable>(1, size));
         for (std::size_t i = 0; i < scene.objects.size(); ++i) {
             lobe_of_object_.push_back(0);
             materials_.push_back(lobes_of(world.material(i)));
@@ -60,7 +73,7 @@ FastLamps::FastLamps(const World& world, const Plan& plan, const FastMethods& me
             }
             if (lobes_[lobe_of_object_[i]]->exponent() == exponent) continue;
             lobe_of_object_[i] = lobes_.size();
-            lobes_.push_back(std::make_unique<SurfaceBatchTable>(exponent, kLobeTable));
+            lobes_.push_back(std::make_unique<SurfaceBatchTable>(exponent, size));
         }
         counts.tables += lobes_.size();
     }

@@ -16,7 +16,7 @@
 //                           mixed-gl16    4300 (3)      3e-2 (shaft)
 //                           mixed-gl32    6700 (3)      3e-2 (shaft: noise)
 //     airlight.environment  march4 … 32   150 … 1200    2e-2 (terrain), 5e-2 (city)
-//     surface.point         gn-table      60            1e-2: noise; +180 % of its light in a room
+//     surface.point         gn16 … gn48   60            1e-2: noise; +180 % of its light in a room
 //     surface.environment   order3 … 32   40            1e-2 (terrain), unshadowed
 //     particles             cells1 … 6    4000 … 25000  2e-4 with cells6
 //     slab                  straight      3000          2e-2
@@ -67,11 +67,16 @@ inline constexpr NamedMethod<FastShafts> kFastShafts[] = {
 /// Light of lamps that media send onto surfaces.
 enum class FastSurfacePoint {
     none,
-    gn_table,  ///< medium/surface_batch.h, with the mean extinction on the way to the lamp
+    gn16,  ///< medium/surface_batch.h, with the mean extinction on the way to the lamp: tables of
+           ///< 16 x 16 for each exponent
+    gn24,
+    gn48,  ///< of 1e-4
 };
 inline constexpr NamedMethod<FastSurfacePoint> kFastSurfacePoints[] = {
     {FastSurfacePoint::none, "none"},
-    {FastSurfacePoint::gn_table, "gn-table"},
+    {FastSurfacePoint::gn16, "gn16"},
+    {FastSurfacePoint::gn24, "gn24"},
+    {FastSurfacePoint::gn48, "gn48"},
 };
 
 /// Light of the map that media send along rays. Media that are the same everywhere have tables;
@@ -114,7 +119,7 @@ struct FastMethods {
     FastAirlight airlight = FastAirlight::mixed_gl32;
     FastGaussians gaussians = FastGaussians::mixed_gl32;
     FastShafts shafts = FastShafts::intervals;
-    FastSurfacePoint surface_point = FastSurfacePoint::gn_table;
+    FastSurfacePoint surface_point = FastSurfacePoint::gn48;
     FastMapAirlight map_airlight = FastMapAirlight::march32;
     FastSurfaceMap surface_map = FastSurfaceMap::order32;
     FastParticles particles = FastParticles::cells6;

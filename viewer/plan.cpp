@@ -93,9 +93,7 @@ Plan make_plan(const World& world, const PlanOptions& options) {
     obey(options.only, plan);
     detail::name_reference_methods(plan);
     if (options.bounds) estimate_costs(world, plan);
-    if (options.engine == Engine::fast && options.bounds && !options.all) {
-        choose_fast_methods(world, plan);
-    }
+    if (options.engine == Engine::fast && options.bounds) choose_fast_methods(world, plan);
     return plan;
 }
 

@@ -18,6 +18,7 @@ void name_integral(const Plan& plan, EffectChoice& c, bool closed, std::size_t l
         return;
     }
     c.rung = fmt::format("adaptive quadrature to {:.1g}", plan.quadrature);
+    if (plan.engine == Engine::fast) return;  // which names its own
     c.bound += plan.quadrature * double(lamps);
     c.bound_kind = BoundKind::estimated;
 }
