@@ -61,7 +61,7 @@ void FastLamps::light_media(FastBlock& block, LayeredRadiance* out, FastCounts& 
                             plan_.lights[lamp].airlight_point && world_.media().any(false);
         if (!gaussians && !others) continue;
         if (!(largest(world_.scene().lights[lamp].intensity) > 0)) continue;
-        if (world_.media().everywhere()) {
+        if (world_.media().everywhere() && !plan_.everything) {
             light_uniform(lamp, block, out, counts);
         } else if (gaussians && !fogshop_.empty()) {
             light_fogshop(lamp, others, block, out, counts);

@@ -9,6 +9,7 @@
 
 #include "viewer/camera.h"
 #include "viewer/fast.h"
+#include "viewer/plan_cost.h"
 #include "viewer/reference.h"
 
 namespace airlight {
@@ -51,10 +52,15 @@ struct Truth {
             whole[Effect::shadow_prt].runs = true;
         }
         ReferenceOptions options;
-        options.quadrature = std::max(1e-4, 0.1 * plan.tolerance);
+        options.quadrature = std::clamp(0.1 * plan.tolerance, 1e-4, 1e-3);
         const ReferenceRenderer renderer(world, whole, options);
+        // No fewer for a tighter tolerance, or for everything.
+        Plan costs = plan;
+        costs.everything = false;
+        costs.quadrature = 1e-3;
+        estimate_costs(world, costs);
         const double affordable =
-            kSampling / (std::max(1.0, plan.cost()) * double(directions.size()));
+            kSampling / (std::max(1.0, costs.cost()) * double(directions.size()));
         const int count =
             static_cast<int>(std::clamp(affordable, double(kLeastSamples), double(kMostSamples)));
         std::vector<LayeredRadiance> samples(static_cast<std::size_t>(count));
@@ -124,7 +130,7 @@ class Chooser {
         closed(Effect::density_height, "closed form", 0);
         closed(Effect::density_atmosphere, "closed form", 0);
         closed(Effect::brdf_glossy, "lobe", 20);
-        if (everywhere) {
+        if (everywhere && !plan_.everything) {
             closed(Effect::airlight_point, "closed form", 40 * lamps);
         } else {
             pick(Effect::airlight_point, {RadianceLayer::airlight_point}, kFastAirlights,

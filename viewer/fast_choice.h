@@ -13,10 +13,18 @@ namespace airlight {
 /// Errors are measured on a sketch of 24 x 14 rays, over the brightest: of a rung, twice its
 /// largest difference from the finest of its ladder; of the finest, against the reference, twice
 /// the largest difference of a layer of which nothing is sampled, else twice the root mean square
-/// less what the samples' own scatter explains, and times three. Where the finest leaves no room
-/// for the rungs, they may add a quarter of its error: what is cheaper then is as good. Light of
-/// lamps on surfaces by way of the media is left out where that is nearer to the reference.
-/// Deterministic. Takes as long as 1300 rays of the reference and some ten sketches.
+/// less what the samples' own scatter explains, and times three; what is under half their scatter
+/// cannot be told from it and counts. So a bound is meant for 99 of 100 pixels, and the root mean
+/// square of a picture is well under it. The error of a layer is in the bound of the first effect
+/// that makes it, in the order of Effect but airlight first. Where the finest leaves no room for
+/// the rungs, they may add a quarter of its error: what is cheaper then is as good. A bound above
+/// the tolerance says that no rung meets it. Light of lamps on surfaces by way of the media is left
+/// out where that is nearer to the reference. With Plan::everything all have their finest rung.
+///
+/// Measured at 48 x 27 on data/scenes, tolerances of 1e-1 to 1e-4: the root mean square against
+/// the reference is a third of the bound at most, the 99th percentile below it.
+/// Deterministic. Takes as long as 1300 to 20000 rays of the reference, the more where they are
+/// cheap, and some ten sketches.
 void choose_fast_methods(const World& world, Plan& plan);
 
 /// The methods that a plan names; the most exact where it names none.

@@ -32,7 +32,8 @@ namespace airlight {
 
 /// Light of lamps that media send along rays. Where all media are the same everywhere it is a
 /// closed form, in float vectors where they scatter evenly (medium/airlight_batch.h); these are for
-/// other media: the nodes of viewer/ray_nodes.h on each part of a ray that the lamp reaches.
+/// other media, and for all with Plan::everything: the nodes of viewer/ray_nodes.h on each part of
+/// a ray that the lamp reaches.
 enum class FastAirlight { mixed_gl8, mixed_gl16, mixed_gl32 };
 inline constexpr NamedMethod<FastAirlight> kFastAirlights[] = {
     {FastAirlight::mixed_gl8, "mixed-gl8"},

@@ -21,8 +21,10 @@ inline constexpr NamedMethod<Engine> kEngines[] = {{Engine::reference, "referenc
 
 /// What a bound rests on.
 enum class BoundKind {
-    proven,     ///< holds for every pixel
-    estimated,  ///< by a quadrature, or as twice the largest error of a sketch of the picture
+    proven,  ///< holds for every pixel
+    /// By a quadrature; or from a sketch of the picture, meant for 99 of 100 pixels
+    /// (viewer/fast_choice.h).
+    estimated,
 };
 
 struct EffectChoice {
@@ -30,6 +32,7 @@ struct EffectChoice {
     std::string reason;  ///< a clause in words
     std::string rung;    ///< its method; empty where it does not run
     /// On the error of a pixel over the brightest: of leaving the effect out, or of its method.
+    /// Above its share of the tolerance where no method is better.
     double bound = 0;
     BoundKind bound_kind = BoundKind::proven;
     double cost = 0;  ///< expected nanoseconds of CPU time for a ray of view
