@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "viewer/phase_file.h"
@@ -14,6 +15,8 @@ namespace {
 // In units of a Gaussian's 1 / scale.
 constexpr double kMarkSteps[] = {-3, -1, 1, 3};
 constexpr double kDenseRadius = 6;  // beyond, it is under e^-36 of itself
+// Deep in a planet densities overflow, and no light times an endless density is no number.
+constexpr double kDensest = 1e100;
 
 struct PartBuilder {
     std::vector<DensityField>& shapes;
@@ -123,7 +126,8 @@ glm::dvec3 MediumPart::density(const glm::dvec3& x) const {
     if (tree_) {
         return glm::dvec3(tree_->density(x, kTreeDensity * densest_));
     }
-    return by_channel([&](const DensityField& shape) { return density_at(shape, x); });
+    return glm::min(by_channel([&](const DensityField& shape) { return density_at(shape, x); }),
+                    kDensest);
 }
 
 glm::dvec3 MediumPart::depth(const glm::dvec3& origin, const glm::dvec3& direction,

@@ -95,6 +95,19 @@ TEST(SceneMedia, EndlessWaysHaveEndlessDepthsAndNoNan) {
     EXPECT_EQ(SceneMedia().depth({0, 0, 0}, {0, 1, 0}, kInfinite), glm::dvec3(0));
 }
 
+TEST(SceneMedia, DensitiesDeepUnderTheGroundAreNumbers) {
+    const glm::dvec3 grey(0.1);
+    for (const SceneMedium& medium : {medium_of(SceneAtmosphere{{0, 0, 0}, 1e9, grey, 10}),
+                                      medium_of(SceneExponentialHeight{grey, 1e-6}),
+                                      medium_of(SceneExponentialHeight{grey, -1e-6})}) {
+        for (const double height : {-1.0, 0.0, 1.0}) {
+            const double density = MediumPart(medium).density({0, height, 0}).x;
+            EXPECT_GE(density, 0) << medium_type(medium);
+            EXPECT_EQ(density * 0.0, 0) << medium_type(medium);
+        }
+    }
+}
+
 TEST(SceneMedia, AlbedosArePartsOfTheExtinction) {
     const MediumPart part(medium_of(SceneUniform{{0.1, 0.2, 0}, {0.3, 0, 0}}));
     EXPECT_DOUBLE_EQ(part.albedo().x, 0.25);
