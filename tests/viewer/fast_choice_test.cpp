@@ -30,7 +30,7 @@ TEST(FastChoice, ATighterToleranceTakesFinerShadows) {
     const ScratchDirectory directory;
     const World world(ball_in_fog(directory));
     std::vector<FastShafts> chosen;
-    for (const double tolerance : {1.0, 1e-3, 1e-6}) {
+    for (const double tolerance : {4.0, 1e-3, 1e-6}) {
         Plan plan = plan_of_everything(world);
         plan.tolerance = tolerance;
         choose_fast_methods(world, plan);
