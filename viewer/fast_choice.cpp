@@ -20,7 +20,7 @@ constexpr int kWidth = 24, kHeight = 14;
 constexpr int kLeastSamples = 4, kMostSamples = 64;
 constexpr double kSampling = 1e8;  // nanoseconds of all
 constexpr double kShare = 0.5;     // of the tolerance, which methods have together
-constexpr double kRoom = 0.25;     // of the finest rung's error
+constexpr double kRoom = 0.5;      // of the finest rung's error
 // A bound over the sketch's largest difference, and over its root mean square. Rays of the sketch
 // miss peaks: the 99th percentile of a picture was up to 3.3 times the sketch's largest.
 constexpr double kOfLargest = 4, kOfRootMeanSquare = 6;

@@ -17,7 +17,7 @@ namespace airlight {
 /// cannot be told from it and counts. So a bound is meant for 99 of 100 pixels, and the root mean
 /// square of a picture is well under it. The error of a layer is in the bound of the first effect
 /// that makes it, in the order of Effect but airlight first. Where the finest leaves no room for
-/// the rungs, they may add a quarter of its error: what is cheaper then is as good. A bound above
+/// the rungs, they may add half of its error: what is cheaper then is as good. A bound above
 /// the tolerance says that no rung meets it. Light of lamps on surfaces by way of the media is left
 /// out where that is nearer to the reference. With Plan::everything all have their finest rung.
 ///
