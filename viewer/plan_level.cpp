@@ -11,6 +11,7 @@ namespace airlight {
 
 double picture_level(const World& world, int width, int height) {
     constexpr int kSide = 32;
+    constexpr std::size_t kMostBlobs = 2000;
     const Camera& camera = world.scene().camera;
     if (width <= 0) width = camera.width;
     if (height <= 0) height = camera.height;
@@ -20,7 +21,19 @@ double picture_level(const World& world, int width, int height) {
     for (const Effect effect : {Effect::surface_point, Effect::particles}) {
         holds.only.remove(effect);
     }
-    Plan plan = make_plan(world, holds);
+    // Thousands of Gaussians would take longer than a sketch may; what they send is left out then.
+    std::size_t blobs = 0;
+    for (const SceneMedium& medium : world.scene().media) {
+        const auto* const gaussians = std::get_if<SceneGaussians>(&medium.kind);
+        blobs += gaussians ? gaussians->blobs.size() : 0;
+    }
+    if (blobs > kMostBlobs) {
+        for (const Effect effect :
+             {Effect::airlight_point, Effect::airlight_gaussians, Effect::airlight_environment}) {
+            holds.only.remove(effect);
+        }
+    }
+    const Plan plan = make_plan(world, holds);
     ReferencePictureOptions options;
     options.width = std::max(1, static_cast<int>(width * scale));
     options.height = std::max(1, static_cast<int>(height * scale));

@@ -79,8 +79,16 @@ glm::dvec3 ReferenceRenderer::airlight_of(std::size_t lamp, Scatterers which,
     std::vector<double> breaks =
         media.marks(origin, direction, distance, &light.position,
                     options_.quadrature < 1e-3 ? SceneMedia::kFineMarks : SceneMedia::kWideMarks);
-    if (foot > 0 && foot < distance) {
-        breaks.insert(std::upper_bound(breaks.begin(), breaks.end(), foot), foot);
+    // Beside a lamp that the ray passes closely most of the ray is a sliver of the angle.
+    std::vector<double> places = {foot};
+    const double last_mark = breaks.size() > 2 ? breaks[breaks.size() - 2] : 0;
+    for (double step = 8 * height; step < std::abs(last_mark - foot); step *= 8) {
+        places.push_back(foot - step);
+        places.push_back(foot + step);
+    }
+    for (const double t : places) {
+        if (t > 0 && t < distance)
+            breaks.insert(std::upper_bound(breaks.begin(), breaks.end(), t), t);
     }
     const auto angle_at = [&](double t) { return std::atan((t - foot) / height); };
     std::vector<LinePanel> panels;

@@ -131,6 +131,29 @@ TEST_F(ReferenceTest, ShadowsOfGaussiansAreFound) {
     }
 }
 
+// Most of such a ray is a sliver of the angle at the lamp.
+TEST_F(ReferenceTest, RaysThatPassALampCloselyMeetTheirTolerance) {
+    Scene scene;
+    scene.media = {gaussians({{{0, 0.3, 4}, 0.8, 0.5}})};
+    ReferenceOptions coarse, fine;
+    coarse.quadrature = 2e-3;
+    fine.quadrature = 1e-9;
+    for (const double height : {1e-6, 1e-4, 1e-2}) {
+        scene.lights = {{{0, height, 0}, glm::dvec3(1)}};
+        const World world(scene);
+        for (const double z : {0.7, 0.9, 0.99, 1.0}) {
+            const glm::dvec3 direction(std::sqrt(1 - z * z), 0, z);
+            const auto airlight = [&](const ReferenceOptions& options) {
+                return ReferenceRenderer(world, options)
+                    .airlight_of_lights(glm::dvec3(0), direction, kInfinite, counts_)
+                    .x;
+            };
+            const double exact = airlight(fine);
+            EXPECT_NEAR(airlight(coarse), exact, 2e-3 * exact) << height << " " << z;
+        }
+    }
+}
+
 TEST_F(ReferenceTest, AnAtmosphereIsFoundHoweverFarTheLampIs) {
     Scene scene;
     SceneMedium air;
