@@ -2,15 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the example scenes and their meshes.
 
-Usage: make_scenes.py FOLDER
+Usage: make_scenes.py FOLDER [PROGRAM]
 
-Writes FOLDER/*.json and FOLDER/meshes/*.obj; data/scenes holds the result. Everything is made of
+Writes FOLDER/*.json and FOLDER/meshes/*.obj and, with the path of airlight, bakes FOLDER/meshes/*.prt;
+data/scenes holds the result. Everything is made of
 spheres, boxes, quads and one height field. +Y up, metres. Needs nothing beyond Python's own
 library, and writes the same bytes wherever it runs.
 """
 import json
 import math
 import os
+import subprocess
 import sys
 
 
@@ -151,11 +153,13 @@ def phong(diffuse, specular, exponent):
     return {"type": "phong", "diffuse": diffuse, "specular": specular, "exponent": exponent}
 
 
-def thing(mesh, material, position=None, scale=1):
+def thing(mesh, material, position=None, scale=1, prt=None):
     entry = {"mesh": mesh if "/" in mesh else "meshes/" + mesh + ".obj"}
     if position:
         entry["transform"] = [scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, 0, *position, 1]
     entry["material"] = material
+    if prt:
+        entry["prt"] = "meshes/" + prt + ".prt"
     return entry
 
 
@@ -217,7 +221,7 @@ def scenes():
         yield name, {"camera": camera([0.8, 1.5, away], [0, 1.15, 0], 38),
                      "environment": {"file": ROOM, "distance": distance},
                      **({"media": [uniform(beta)]} if beta else {}),
-                     "objects": [thing("../knot.ply", phong(0.5, 0.15, 16))]}
+                     "objects": [thing("../knot.ply", phong(0.5, 0.15, 16), prt="knot")]}
 
     steam = [([0.25 * math.sin(1.9 * i) * (0.2 + 0.1 * i), 0.9 + 0.16 * i,
                0.25 * math.cos(1.3 * i) * (0.2 + 0.1 * i)], round(3.2 / (1 + 0.12 * i), 3),
@@ -235,7 +239,7 @@ def scenes():
                       "objects": [thing("terrain", lambert([0.3, 0.33, 0.22]))]}
     yield "city", {"camera": camera([2, 5, 34], [0, 7, -20], 45),
                    "environment": {"file": SKY, "distance": 120},
-                   "media": [patches(70, 60, 1, 9, 0.14, 0.05),
+                   "media": [patches(70, 60, 1, 9, 0.14, 0.012),
                              {"type": "height", "profile": "exponential", "density": 0.012,
                               "scale_height": 9}],
                    "objects": [thing("city", lambert([0.4, 0.38, 0.36]))]}
@@ -277,8 +281,32 @@ def scenes():
                      "shafts": {"shadow_map": 1024, "particles": {"mu": 0.5, "sigma": 0.5}}}
     yield "clear-day", {"camera": camera([0.8, 1.5, 7], [0, 1.15, 0], 38),
                         "environment": {"file": SKY},
-                        "objects": [thing("../knot.ply", phong(0.5, 0.15, 16)),
-                                    thing("floor", lambert(0.4), [0, -0.3, 0])]}
+                        "objects": [thing("../knot.ply", phong(0.5, 0.15, 16), prt="knot-plaza"),
+                                    thing("plaza", lambert(0.4), prt="plaza")]}
+
+
+def plaza():
+    """A floor of 60 m with vertices where the knot's shadow falls."""
+    count = 48
+    at = [math.copysign(30 * abs(u) ** 2.2, u)
+          for u in (2 * i / count - 1 for i in range(count + 1))]
+    row = count + 1
+    faces = [[k, k + 1, k + row + 1, k + row]
+             for k in (i * row + j for i in range(count) for j in range(count))]
+    return Mesh().add([(x, -0.3, z) for x in at for z in at], faces)
+
+
+def bake(program, folder):
+    """What objects see; without bounces, as the reference has it."""
+    meshes = os.path.join(folder, "meshes")
+    knot, floor = os.path.join(folder, "..", "knot.ply"), os.path.join(meshes, "plaza.obj")
+    for mesh, name, flags in (
+            (knot, "knot", ["--order", "5"]),
+            (knot, "knot-plaza", ["--order", "4", "--occluder", floor]),
+            (floor, "plaza", ["--order", "5", "--occluder", knot, "--kind", "transfer"])):
+        output = os.path.join(meshes, name + ".prt")
+        subprocess.run([program, "bake", mesh, "-o", output, "--rays", "1024", "--type", "float16",
+                        "--force", "-q"] + flags, check=True)
 
 
 def dump(value, indent=0):
@@ -306,11 +334,13 @@ def main():
     for name, mesh in (("floor", floor), ("room", room), ("sphere", Mesh().sphere((0, 0, 0), 1, 24)),
                        ("planet", Mesh().sphere((0, 0, 0), 1, 60)), ("street", lamps()),
                        ("courtyard", courtyard()), ("terrain", terrain()), ("city", city()),
-                       ("window", window())):
+                       ("window", window()), ("plaza", plaza())):
         mesh.write(os.path.join(meshes, name + ".obj"))
     for name, scene in scenes():
         with open(os.path.join(folder, name + ".json"), "w", newline="\n") as out:
             out.write(dump({"airlight_scene": 1, **scene}) + "\n")
+    if len(sys.argv) > 2:
+        bake(sys.argv[2], folder)
 
 
 if __name__ == "__main__":
