@@ -219,7 +219,7 @@ Command declare_render(CLI::App& program) {
              "(default: 4096)",
              [=](const std::string& text) {
                  request->options.paths.max_bounces =
-                     parse_integer(text, "--bounces", 1, kLargestBounces);
+                     parse_integer(text, "--bounces", 1, kLargestPathBounces);
                  request->bounces = true;
              });
     command.app

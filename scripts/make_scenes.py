@@ -219,7 +219,8 @@ def scenes():
                                  ("statue-far", 25, 0.12)):
         away = 6.5 if beta == 0 else 8.5
         yield name, {"camera": camera([0.8, 1.5, away], [0, 1.15, 0], 38),
-                     "environment": {"file": ROOM, "distance": distance},
+                     "environment": {"file": ROOM, "rotation_degrees": 168,
+                                     "distance": distance},
                      **({"media": [uniform(beta)]} if beta else {}),
                      "objects": [thing("../knot.ply", phong(0.5, 0.15, 16), prt="knot")]}
 

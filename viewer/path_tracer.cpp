@@ -93,9 +93,9 @@ struct PathTracer::Path {
 
 PathTracer::PathTracer(const World& world, const PathTracerOptions& options)
     : world_(world), options_(options) {
-    if (options.max_bounces < 1 || options.max_bounces > kLargestBounces) {
+    if (options.max_bounces < 1 || options.max_bounces > kLargestPathBounces) {
         throw Error(ErrorCode::usage, fmt::format("the bounces of a path must be 1 to {}, got {}",
-                                                  kLargestBounces, options.max_bounces));
+                                                  kLargestPathBounces, options.max_bounces));
     }
     if (!world.slabs().empty()) {
         throw Error(ErrorCode::usage,

@@ -41,14 +41,14 @@
 namespace airlight {
 
 struct PathTracerOptions {
-    /// Points where a path scatters or is reflected, 1 … kLargestBounces.
+    /// Points where a path scatters or is reflected, 1 … kLargestPathBounces.
     int max_bounces = 4096;
     /// Only the paths that ReferenceRenderer follows: at most one surface, then at most one point
     /// of the media, seen from the eye.
     bool single = false;
 };
 
-inline constexpr int kLargestBounces = 1 << 20;
+inline constexpr int kLargestPathBounces = 1 << 20;
 
 class PathTracer {
   public:
