@@ -45,8 +45,8 @@ void FastLamps::lit(std::size_t lamp, const glm::dvec3& origin, const glm::dvec3
     if (!shaded) {
         parts.assign(1, {0, distance});
     } else if (methods_.shafts == FastShafts::intervals) {
-        parts = world_.shadows()->lit(world_.scene().lights[lamp].position, origin, direction,
-                                      distance);
+        world_.shadows()->lit(world_.scene().lights[lamp].position, origin, direction, distance,
+                              parts);
     } else {
         shadow_maps_[lamp].lit(origin, direction, distance, points_of(methods_.shafts), parts);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewer/ray_shadows.h"
 
+#include <hwy/base.h>
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -12,118 +13,149 @@
 namespace airlight {
 namespace {
 
-constexpr std::uint32_t kLeaf = 4;
+using detail::kShadowLanes;
+using detail::Linear;
+using detail::ShadowBoxes;
+using detail::ShadowQuery;
+using detail::ShadowTriangles;
+using detail::ShadowWedge;
+
+using Corners = std::array<glm::dvec3, 3>;  // of a triangle
+
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+// Marks children that are triangles.
+constexpr std::uint32_t kLeaf = 0x80000000u;
 
-/// slope . x + offset.
-struct Linear {
-    glm::dvec3 slope;
-    double offset;
+// The angle at which the light sees a place of the ray, from that of the point next to it.
+struct Turn {
+    double cosine, sine;
 
-    double operator()(const glm::dvec3& x) const { return glm::dot(slope, x) + offset; }
-    double spread(const glm::dvec3& half) const { return glm::dot(glm::abs(slope), half); }
-};
-
-// What shades [begin, end] of the ray lies between two planes through the light.
-struct Wedge {
-    Linear after, before;  // positive inside
-};
-
-// The plane of ray and light: x along the ray from the point next to the light, y towards the
-// light, z off the plane. The light is at (0, h, 0).
-class Plane {
-  public:
-    Plane(const glm::dvec3& light, const glm::dvec3& origin, const glm::dvec3& direction)
-        : foot_(glm::dot(light - origin, direction)) {
-        const glm::dvec3 across = light - origin - foot_ * direction;
-        height_ = glm::length(across);
-        const double least = 1e-12 * (1 + std::abs(foot_));
-        glm::dvec3 up = across / height_, other;
-        if (!(height_ > least)) {
-            make_axes(direction, up, other);
-            height_ = least;
-        }
-        const glm::dvec3 at = origin + foot_ * direction;
-        x = {direction, -glm::dot(direction, at)};
-        y = {up, -glm::dot(up, at)};
-        const glm::dvec3 normal = glm::cross(direction, up);
-        z = {normal, -glm::dot(normal, at)};
-    }
-
-    double height() const { return height_; }
-    double foot() const { return foot_; }
-
-    /// cos(u) x - sin(u) (h - y) is positive for what shades the ray beyond foot + h tan(u).
-    Linear beyond(double t) const {
-        const double u = std::atan((t - foot_) / height_);
-        const double cosine = std::isfinite(t) ? std::cos(u) : 0, sine = std::sin(u);
-        return {cosine * x.slope + sine * y.slope, cosine * x.offset + sine * (y.offset - height_)};
-    }
-    Wedge wedge(double begin, double end) const {
-        const Linear end_plane = beyond(end);
-        return {beyond(begin), {-end_plane.slope, -end_plane.offset}};
-    }
-
-    Linear x, y, z;
-
-  private:
-    double foot_, height_;
-};
-
-// Ascending, those that touch joined.
-void merge(std::vector<RayInterval>& intervals) {
-    std::sort(intervals.begin(), intervals.end(),
-              [](const RayInterval& a, const RayInterval& b) { return a.begin < b.begin; });
-    std::size_t last = 0;
-    for (std::size_t i = 1; i < intervals.size(); ++i) {
-        RayInterval& before = intervals[last];
-        if (intervals[i].begin <= before.end + 1e-12 * (1 + std::abs(before.end))) {
-            before.end = std::max(before.end, intervals[i].end);
+    Turn(const ShadowQuery& query, double t) {
+        const double tangent = (t - query.foot) / query.height;
+        if (std::abs(tangent) < 1e100) {
+            cosine = 1 / std::sqrt(1 + tangent * tangent);
+            sine = cosine * tangent;
         } else {
-            intervals[++last] = intervals[i];
+            cosine = 0;
+            sine = tangent < 0 ? -1 : 1;
         }
     }
-    if (!intervals.empty()) intervals.resize(last + 1);
+};
+
+// cos(u) x - sin(u) (h - y) is positive for what shades the ray beyond foot + h tan(u).
+Linear beyond(const ShadowQuery& query, const Turn& u) {
+    return {u.cosine * query.x.slope + u.sine * query.y.slope,
+            u.cosine * query.x.offset + u.sine * (query.y.offset - query.height)};
 }
 
-// Where on the ray a cut of a triangle throws its shadow; empty where begin >= end.
-RayInterval shadow_of(const Plane& plane, const std::array<glm::dvec3, 3>& corners) {
-    double side[3];
-    for (std::size_t i = 0; i < 3; ++i) side[i] = plane.z(corners[i]);
-    const bool above[3] = {side[0] >= 0, side[1] >= 0, side[2] >= 0};
-    if (above[0] == above[1] && above[1] == above[2]) return {};
-    double x[2], y[2];
-    int cuts = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        std::size_t from = i, to = (i + 1) % 3;
-        if (above[from] == above[to]) continue;
-        // Both triangles of an edge cut it at the same place, to the bit.
-        if (above[from]) std::swap(from, to);
-        const double part = side[from] / (side[from] - side[to]);
-        const glm::dvec3 cut = corners[from] + part * (corners[to] - corners[from]);
-        x[cuts] = plane.x(cut);
-        y[cuts] = plane.y(cut);
-        ++cuts;
+ShadowWedge wedge(const ShadowQuery& query, const Turn& begin, const Turn& end) {
+    const Linear last = beyond(query, end);
+    return {beyond(query, begin), {-last.slope, -last.offset}};
+}
+
+ShadowQuery make_query(const glm::dvec3& light, const glm::dvec3& origin,
+                       const glm::dvec3& direction, double distance) {
+    ShadowQuery query;
+    query.distance = distance;
+    query.foot = glm::dot(light - origin, direction);
+    const glm::dvec3 across = light - origin - query.foot * direction;
+    query.height = glm::length(across);
+    const double least = 1e-12 * (1 + std::abs(query.foot));
+    glm::dvec3 up = across / query.height, other;
+    if (!(query.height > least)) {
+        make_axes(direction, up, other);
+        query.height = least;
     }
-    const double h = plane.height();
-    if (y[0] > y[1]) {
-        std::swap(x[0], x[1]);
-        std::swap(y[0], y[1]);
+    const glm::dvec3 at = origin + query.foot * direction, normal = glm::cross(direction, up);
+    query.x = {direction, -glm::dot(direction, at)};
+    query.y = {up, -glm::dot(up, at)};
+    query.z = {normal, -glm::dot(normal, at)};
+    query.low = glm::min(light, origin);
+    query.high = glm::max(light, origin);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0) continue;
+        const double end = origin[axis] + distance * direction[axis];
+        query.low[axis] = std::min(query.low[axis], end);
+        query.high[axis] = std::max(query.high[axis], end);
     }
-    if (!(y[1] > 0 && y[0] < h)) return {};
-    const double slope = (x[1] - x[0]) / (y[1] - y[0]), at_light = x[1] - slope * (y[1] - h);
-    if (y[0] < 0) {
-        x[0] -= slope * y[0];
-        y[0] = 0;
+    query.all = wedge(query, Turn(query, 0), Turn(query, distance));
+    return query;
+}
+
+std::size_t lowest_bit(unsigned bits) {
+    return hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
+}
+
+// Into ascending ones that are apart; those that touch it become one, which is returned.
+RayInterval insert(std::vector<RayInterval>& parts, RayInterval part) {
+    std::size_t first = parts.size();
+    while (first > 0 && parts[first - 1].end >= part.begin) --first;
+    std::size_t last = first;
+    while (last < parts.size() && parts[last].begin <= part.end) ++last;
+    if (first == last) {
+        parts.insert(parts.begin() + static_cast<std::ptrdiff_t>(first), part);
+        return part;
     }
-    const double a = plane.foot() + h * x[0] / (h - y[0]);
-    double b = 0;
-    if (y[1] < h) {
-        b = plane.foot() + h * x[1] / (h - y[1]);
-    } else {
-        b = at_light < 0 ? -kInfinite : kInfinite;
+    part = {std::min(part.begin, parts[first].begin), std::max(part.end, parts[last - 1].end)};
+    parts[first] = part;
+    parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(first) + 1,
+                parts.begin() + static_cast<std::ptrdiff_t>(last));
+    return part;
+}
+
+// What ascending parts leave of [0, distance].
+void invert(double distance, std::vector<RayInterval>& parts) {
+    std::size_t count = 0;
+    double end = 0;
+    const std::size_t shaded = parts.size();
+    for (std::size_t i = 0; i < shaded; ++i) {
+        const RayInterval part = parts[i];
+        if (part.begin > end + (i > 0 ? 1e-12 * (1 + end) : 0)) parts[count++] = {end, part.begin};
+        end = part.end;
     }
-    return {std::min(a, b), std::max(a, b)};
+    parts.resize(count);
+    if (end < distance) parts.push_back({end, distance});
+}
+
+struct Box {
+    glm::dvec3 low{kInfinite}, high{-kInfinite};
+
+    double area() const {
+        const glm::dvec3 e = high - low;
+        return e.x * e.y + e.y * e.z + e.z * e.x;
+    }
+};
+
+Box box_of(const Corners* first, const Corners* last) {
+    Box box;
+    for (; first != last; ++first) {
+        for (const glm::dvec3& x : *first) {
+            box.low = glm::min(box.low, x);
+            box.high = glm::max(box.high, x);
+        }
+    }
+    return box;
+}
+
+// Along the axis that leaves the least surface to the boxes of both parts.
+void halve(Corners* first, Corners* middle, Corners* last) {
+    if (middle == last) return;
+    const auto along = [&](int axis) {
+        std::nth_element(first, middle, last, [axis](const Corners& s, const Corners& t) {
+            return s[0][axis] + s[1][axis] + s[2][axis] < t[0][axis] + t[1][axis] + t[2][axis];
+        });
+        return box_of(first, middle).area() * double(middle - first) +
+               box_of(middle, last).area() * double(last - middle);
+    };
+    int best = 2;
+    double least = kInfinite;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double area = along(axis);
+        if (!(area < least)) continue;
+        least = area;
+        best = axis;
+    }
+    if (best != 2) along(best);
 }
 
 }  // namespace
@@ -131,114 +163,108 @@ RayInterval shadow_of(const Plane& plane, const std::array<glm::dvec3, 3>& corne
 RayShadows::RayShadows(const std::vector<Mesh>& meshes, std::size_t max_memory) {
     std::size_t count = 0;
     for (const Mesh& mesh : meshes) count += mesh.triangles.size();
-    require_memory(checked_multiply(count, sizeof(triangles_[0]) + sizeof(Node), "the shadows"),
-                   max_memory, "the shadows");
-    triangles_.reserve(count);
+    require_memory(checked_multiply(count, 180, "the shadows"), max_memory, "the shadows");
+    std::vector<Corners> corners;
+    corners.reserve(count);
     for (const Mesh& mesh : meshes) {
         for (const glm::uvec3& t : mesh.triangles) {
-            triangles_.push_back({mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]});
+            corners.push_back({mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]});
         }
     }
-    if (count > 0) build(0, static_cast<std::uint32_t>(count));
+    triangles_.reserve((count + kShadowLanes - 1) / kShadowLanes);
+    if (count > 0) root_ = build(corners.data(), corners.data() + count);
 }
 
-void RayShadows::build(std::uint32_t first, std::uint32_t last) {
-    glm::dvec3 low(kInfinite), high(-kInfinite), low_middle(kInfinite), high_middle(-kInfinite);
-    for (std::uint32_t i = first; i < last; ++i) {
-        const auto& [a, b, c] = triangles_[i];
-        low = glm::min(low, glm::min(a, glm::min(b, c)));
-        high = glm::max(high, glm::max(a, glm::max(b, c)));
-        low_middle = glm::min(low_middle, a + b + c);
-        high_middle = glm::max(high_middle, a + b + c);
+// By halves, down to eight parts of at most `unit` triangles, the least 8^k that is enough: boxes
+// and leaves are full but for the last.
+std::uint32_t RayShadows::build(Corners* first, Corners* last) {
+    const std::ptrdiff_t count = last - first;
+    if (count <= kShadowLanes) {
+        ShadowTriangles& eight = triangles_.emplace_back();
+        for (int lane = 0; lane < kShadowLanes; ++lane) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                // Lanes that are left over have one corner of the first three times.
+                const glm::dvec3& x = lane < count ? first[lane][i] : first[0][0];
+                for (int axis = 0; axis < 3; ++axis) eight.corner[i][axis][lane] = x[axis];
+            }
+        }
+        return kLeaf | static_cast<std::uint32_t>(triangles_.size() - 1);
     }
-    const std::size_t here = nodes_.size();
-    nodes_.emplace_back();
-    constexpr float kMost = std::numeric_limits<float>::infinity();
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto i = static_cast<std::size_t>(axis);
-        nodes_[here].low[i] = std::nextafter(static_cast<float>(low[axis]), -kMost);
-        nodes_[here].high[i] = std::nextafter(static_cast<float>(high[axis]), kMost);
+    std::ptrdiff_t unit = kShadowLanes;
+    while (unit * kShadowLanes < count) unit *= kShadowLanes;
+    Corners* borders[kShadowLanes + 1] = {first};
+    borders[kShadowLanes] = last;
+    for (int step = kShadowLanes; step > 1; step /= 2) {
+        for (int i = 0; i < kShadowLanes; i += step) {
+            const std::ptrdiff_t units = (borders[i + step] - borders[i] + unit - 1) / unit;
+            const std::ptrdiff_t before = (units + 1) / 2 * unit;
+            borders[i + step / 2] = std::min(borders[i] + before, borders[i + step]);
+            halve(borders[i], borders[i + step / 2], borders[i + step]);
+        }
     }
-    if (last - first <= kLeaf) {
-        nodes_[here].first = first;
-        nodes_[here].count = last - first;
+    const std::size_t here = boxes_.size();
+    boxes_.emplace_back();
+    for (int lane = 0; lane < kShadowLanes; ++lane) {
+        const Box box = box_of(borders[lane], borders[lane + 1]);
+        for (int axis = 0; axis < 3; ++axis) {
+            if (borders[lane] == borders[lane + 1]) {
+                boxes_[here].half[axis][lane] = -1;
+                continue;
+            }
+            const auto middle = static_cast<float>(0.5 * box.low[axis] + 0.5 * box.high[axis]);
+            const double half =
+                std::max(box.high[axis] - double(middle), double(middle) - box.low[axis]);
+            boxes_[here].middle[axis][lane] = middle;
+            boxes_[here].half[axis][lane] =
+                std::nextafter(static_cast<float>(half), std::numeric_limits<float>::infinity());
+        }
+        if (borders[lane] == borders[lane + 1]) continue;
+        const std::uint32_t child = build(borders[lane], borders[lane + 1]);
+        boxes_[here].child[lane] = child;
+    }
+    return static_cast<std::uint32_t>(here);
+}
+
+void RayShadows::lit(const glm::dvec3& light, const glm::dvec3& origin, const glm::dvec3& direction,
+                     double distance, std::vector<RayInterval>& parts) const {
+    parts.clear();
+    if (triangles_.empty()) {
+        parts.push_back({0, distance});
         return;
     }
-    const glm::dvec3 extent = high_middle - low_middle;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0
-                     : extent.y >= extent.z                       ? 1
-                                                                  : 2;
-    const std::uint32_t middle = first + (last - first) / 2;
-    std::nth_element(triangles_.begin() + first, triangles_.begin() + middle,
-                     triangles_.begin() + last, [axis](const auto& s, const auto& t) {
-                         return s[0][axis] + s[1][axis] + s[2][axis] <
-                                t[0][axis] + t[1][axis] + t[2][axis];
-                     });
-    build(first, middle);
-    nodes_[here].first = static_cast<std::uint32_t>(nodes_.size());
-    build(middle, last);
-}
-
-std::vector<RayInterval> RayShadows::lit(const glm::dvec3& light, const glm::dvec3& origin,
-                                         const glm::dvec3& direction, double distance) const {
-    if (nodes_.empty()) return {{0, distance}};
-    const Plane plane(light, origin, direction);
-    const Wedge all = plane.wedge(0, distance);
-    Wedge shadow{};
+    ShadowQuery query = make_query(light, origin, direction, distance);
     double widest = 0;
-    std::vector<RayInterval> shaded;
-    std::uint32_t stack[64];
+    // Seven are left behind on each of the levels, of which 2^31 triangles have 11.
+    std::uint32_t stack[96];
     int depth = 0;
-    stack[depth++] = 0;
+    stack[depth++] = root_;
     while (depth > 0) {
-        const std::uint32_t index = stack[--depth];
-        const Node& node = nodes_[index];
-        const glm::dvec3 low(node.low[0], node.low[1], node.low[2]);
-        const glm::dvec3 high(node.high[0], node.high[1], node.high[2]);
-        const glm::dvec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
-        if (!(std::abs(plane.z(middle)) <= plane.z.spread(half))) continue;
-        const double y = plane.y(middle), spread = plane.y.spread(half);
-        if (!(y + spread >= 0 && y - spread <= plane.height())) continue;
-        if (!(all.after(middle) + all.after.spread(half) >= 0 &&
-              all.before(middle) + all.before.spread(half) >= 0)) {
+        const std::uint32_t node = stack[--depth];
+        if ((node & kLeaf) == 0) {
+            const ShadowBoxes& boxes = boxes_[node];
+            const unsigned bits = detail::boxes_in_question(boxes, query);
+            for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
+                stack[depth++] = boxes.child[lowest_bit(rest)];
+            }
             continue;
         }
-        if (widest > 0 && shadow.after(middle) > shadow.after.spread(half) &&
-            shadow.before(middle) > shadow.before.spread(half)) {
-            continue;
+        double begin[kShadowLanes], end[kShadowLanes];
+        const unsigned bits = detail::shadows_of(triangles_[node & ~kLeaf], query, begin, end);
+        if (bits == 0) continue;
+        RayInterval found;
+        for (unsigned rest = bits; rest != 0; rest &= rest - 1) {
+            const std::size_t lane = lowest_bit(rest);
+            found = insert(parts, {begin[lane], end[lane]});
         }
-        if (node.count == 0) {
-            stack[depth++] = node.first;
-            stack[depth++] = index + 1;
-            continue;
-        }
-        bool more = false;
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            const RayInterval found = shadow_of(plane, triangles_[i]);
-            const RayInterval cut = {std::max(found.begin, 0.0), std::min(found.end, distance)};
-            if (!(cut.begin < cut.end)) continue;
-            shaded.push_back(cut);
-            more = true;
-        }
-        if (!more || shaded.size() < 4) continue;
-        merge(shaded);
-        for (const RayInterval& s : shaded) {
-            const double width = std::atan((s.end - plane.foot()) / plane.height()) -
-                                 std::atan((s.begin - plane.foot()) / plane.height());
-            if (!(width > 1.2 * widest)) continue;
-            widest = width;
-            shadow = plane.wedge(s.begin, s.end);
-        }
+        const Turn first(query, found.begin), last(query, found.end);
+        // 1 - cos of the angle, for a comparison
+        const double width = 1 - (first.cosine * last.cosine + first.sine * last.sine);
+        if (!(width > 1.4 * widest)) continue;
+        widest = width;
+        query.covered = wedge(query, first, last);
+        query.any_covered = true;
     }
-    merge(shaded);
-    std::vector<RayInterval> lit;
-    double end = 0;
-    for (const RayInterval& s : shaded) {
-        if (s.begin > end) lit.push_back({end, s.begin});
-        end = s.end;
-    }
-    if (end < distance) lit.push_back({end, distance});
-    return lit;
+    invert(distance, parts);
 }
 
 }  // namespace airlight

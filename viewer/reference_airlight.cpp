@@ -67,7 +67,7 @@ glm::dvec3 ReferenceRenderer::airlight_of(std::size_t lamp, Scatterers which,
     std::vector<RayInterval> lit = {{0, distance}};
     const bool shaded = options_.shadows_in_media && plan_.lights[lamp].shafts;
     if (by_parts && shaded && world_.shadows()) {
-        lit = world_.shadows()->lit(light.position, origin, direction, distance);
+        world_.shadows()->lit(light.position, origin, direction, distance, lit);
     }
     const SceneSlabs& slabs = world_.slabs();
     if (by_parts && !plan_.everything && media.everywhere() && slabs.empty())

@@ -60,7 +60,7 @@ glm::dvec3 ReferenceRenderer::particles_along(const RayPiece& piece,
         for (const PointLight& light : world_.scene().lights) {
             std::vector<RayInterval> lit = {{0, length}};
             if (options_.shadows_in_media && world_.shadows()) {
-                lit = world_.shadows()->lit(light.position, moved, piece.direction, length);
+                world_.shadows()->lit(light.position, moved, piece.direction, length, lit);
             }
             const double foot = glm::dot(light.position - moved, piece.direction);
             const double height = std::max(

@@ -363,7 +363,8 @@ TEST_F(ReferenceTest, PartsOfARayThatALampReachesAreThoseOfShadowRays) {
                 glm::normalize(glm::dvec3(coordinate(), coordinate(), coordinate()));
             const double distance = i % 3 == 0 ? kInfinite : 8 * stream.next();
             const glm::dvec3 light = scene.lights[0].position;
-            const auto lit = world.shadows()->lit(light, origin, direction, distance);
+            std::vector<RayInterval> lit;
+            world.shadows()->lit(light, origin, direction, distance, lit);
             for (int k = 0; k < 50; ++k) {
                 const double t = std::min(distance, 12.0) * stream.next();
                 bool in = false, near = false;
