@@ -38,6 +38,16 @@ bool within_limits(double x) {
 
 }  // namespace
 
+bool in_airlight_domain(const GaussianBlob& blob, const glm::dvec3& viewer,
+                        const glm::dvec3& light) {
+    if (!(within_limits(blob.center) && within_limits(blob.scale) &&
+          within_limits(blob.amplitude))) {
+        return false;
+    }
+    const double farthest = std::max(norm(blob.center - viewer), norm(blob.center - light));
+    return blob.amplitude == 0 || blob.scale * farthest <= kNarrowest;
+}
+
 GaussianRay::GaussianRay(const GaussianMedium& medium, const glm::dvec3& viewer,
                          const glm::dvec3& light, const glm::dvec3& direction) {
     const double square = glm::dot(direction, direction);
@@ -54,17 +64,13 @@ GaussianRay::GaussianRay(const GaussianMedium& medium, const glm::dvec3& viewer,
     beta0_ = medium.beta0;
     blobs_.reserve(medium.blobs.size());
     for (const GaussianBlob& blob : medium.blobs) {
-        if (!(within_limits(blob.center) && within_limits(blob.scale) &&
-              within_limits(blob.amplitude))) {
-            return;
-        }
+        if (!in_airlight_domain(blob, viewer, light)) return;
         if (blob.amplitude == 0) continue;
         if (blob.scale == 0) {
             beta0_ += blob.amplitude;
             continue;
         }
         const glm::dvec3 to = blob.center - viewer;
-        if (!(blob.scale * std::max(norm(to), norm(blob.center - light)) <= kNarrowest)) return;
         blobs_.push_back({blob.scale, blob.amplitude, norm(glm::cross(to, direction_)),
                           glm::dot(to, direction_), blob.center - light});
     }

@@ -24,6 +24,11 @@ namespace detail {
 /// Lengths, scales and amplitudes that the airlight of Gaussian media takes.
 constexpr double kLargestLength = 1e100;
 
+/// Whether a blob is in the domain of gaussian_airlight: none that is much narrower than it is far
+/// away.
+bool in_airlight_domain(const GaussianBlob& blob, const glm::dvec3& viewer,
+                        const glm::dvec3& light);
+
 /// A ray, the light beside it and the blobs as both see them. x = t - foot is the distance along
 /// the ray from its point next to the light, which is `height` away from the light.
 class GaussianRay {

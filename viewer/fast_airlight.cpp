@@ -7,6 +7,7 @@
 #include "core/constants.h"
 #include "medium/airlight_batch.h"
 #include "medium/phase_airlight.h"
+#include "viewer/axes.h"
 #include "viewer/fast_lamps.h"
 #include "viewer/medium_depths.h"
 #include "viewer/ray_nodes.h"
@@ -33,6 +34,15 @@ int nodes_of(const FastMethods& methods, bool gaussians) {
     return methods.gaussians == FastGaussians::mixed_gl8    ? 8
            : methods.gaussians == FastGaussians::mixed_gl16 ? 16
                                                             : 32;
+}
+
+// A ray through a lamp diverges there; the rounding of coordinates keeps it off.
+glm::dvec3 beside(const glm::dvec3& to_light, const glm::dvec3& direction) {
+    const double foot = glm::dot(to_light, direction), least = 1e-9 * (1 + std::abs(foot));
+    if (!(foot > 0 && glm::length(to_light - foot * direction) < least)) return direction;
+    glm::dvec3 x, y;
+    make_axes(direction, x, y);
+    return glm::normalize(foot * direction + least * x);
 }
 
 }  // namespace
@@ -63,7 +73,7 @@ void FastLamps::light_media(FastBlock& block, LayeredRadiance* out, FastCounts& 
         if (!(largest(world_.scene().lights[lamp].intensity) > 0)) continue;
         if (world_.media().everywhere() && !plan_.everything) {
             light_uniform(lamp, block, out, counts);
-        } else if (gaussians && !fogshop_.empty()) {
+        } else if (gaussians && !fogshop_.empty() && !fogshop_[lamp].empty()) {
             light_fogshop(lamp, others, block, out, counts);
         } else {
             light_varying(lamp, gaussians, others, block, out, counts);
@@ -74,22 +84,23 @@ void FastLamps::light_media(FastBlock& block, LayeredRadiance* out, FastCounts& 
 // [Zhou07] eq. 8 to 17 for each channel, the same for all where all media are grey.
 void FastLamps::light_fogshop(std::size_t lamp, bool others, FastBlock& block, LayeredRadiance* out,
                               FastCounts& counts) const {
-    const glm::dvec3& intensity = world_.scene().lights[lamp].intensity;
+    const PointLight& light = world_.scene().lights[lamp];
     const std::vector<GaussianAirlightEvaluator>& channels = fogshop_[lamp];
     for (std::size_t i = 0; i < block.rays.size(); ++i) {
         const FastRay& ray = block.rays[i];
         if (ray.bent) continue;
         ++counts[Effect::airlight_gaussians];
         if (others) ++counts[Effect::airlight_point];
+        const glm::dvec3 direction = beside(light.position - block.origin, ray.direction);
         FogshopAirlight parts;
         for (std::size_t c = 0; c < 3; ++c) {
-            if (c < channels.size()) parts = channels[c].parts(ray.direction, ray.distance);
+            if (c < channels.size()) parts = channels[c].parts(direction, ray.distance);
             const int channel = static_cast<int>(c);
             out[i][RadianceLayer::airlight_gaussians][channel] +=
-                gaussians_albedo_[channel] * intensity[channel] * parts.gaussians;
+                gaussians_albedo_[channel] * light.intensity[channel] * parts.gaussians;
             if (others) {
                 out[i][RadianceLayer::airlight_point][channel] +=
-                    uniform_albedo_[channel] * intensity[channel] * parts.uniform;
+                    uniform_albedo_[channel] * light.intensity[channel] * parts.uniform;
             }
         }
     }

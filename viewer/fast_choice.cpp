@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -38,8 +40,11 @@ std::vector<glm::dvec3> sketch_directions(const World& world) {
     return directions;
 }
 
+// Endless where one is not finite, so that no method that makes such a pixel is chosen.
 double largest_difference(const glm::dvec3& a, const glm::dvec3& b) {
-    return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+    const glm::dvec3 off = glm::abs(a - b);
+    if (!std::isfinite(off.x + off.y + off.z)) return std::numeric_limits<double>::infinity();
+    return largest(off);
 }
 
 // What the reference says of a sketch: means, and the variance of these means.
@@ -115,8 +120,10 @@ class Chooser {
           directions_(sketch_directions(world)),
           finest_(sketch(methods_, true, true)),
           truth_(world, plan, directions_) {
-        for (const LayeredRadiance& pixel : finest_)
-            level_ = std::max(level_, largest(pixel.total()));
+        for (const LayeredRadiance& pixel : finest_) {
+            const double level = largest(pixel.total());
+            if (std::isfinite(level)) level_ = std::max(level_, level);
+        }
         const auto count = std::count_if(std::begin(kWithMethods), std::end(kWithMethods),
                                          [&](Effect effect) { return plan.runs(effect); });
         share_ = kShare * plan.tolerance / std::max<double>(1, double(count));
@@ -247,7 +254,7 @@ class Chooser {
                     error = std::max(error, kOfLargest * over_level(largest_difference(a, b)));
                 }
             }
-            if (i + 1 < count && !(error <= room)) continue;
+            if (i + 1 < count && !(std::isfinite(error) && error <= room)) continue;
             methods_.*field = rungs[i].method;
             write(effect, rungs[i].name, own + error, costs[i]);
             return;

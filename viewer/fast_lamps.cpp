@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "core/constants.h"
@@ -112,6 +113,8 @@ void FastLamps::build_fogshop(FastCounts& counts) {
         }
     }
     if (gaussians == 0) return;
+    const auto& blobs = medium.blobs;
+    const glm::dvec3& eye = world_.scene().camera.position;
     for (int c = 0; c < 3; ++c) {
         uniform_albedo_[c] = uniform[c] > 0 ? scattering[c] / uniform[c] : 0;
     }
@@ -121,6 +124,13 @@ void FastLamps::build_fogshop(FastCounts& counts) {
                             : GaussianAirlightMethod::centroid;
     for (const PointLight& light : world_.scene().lights) {
         fogshop_.emplace_back();
+        // A lamp at the eye has no finite airlight.
+        if (!(glm::length(light.position - eye) > 1e-9 * (1 + largest(glm::abs(eye))))) continue;
+        if (!std::all_of(blobs.begin(), blobs.end(), [&](const GaussianBlob& blob) {
+                return detail::in_airlight_domain(blob, eye, light.position);
+            })) {
+            continue;
+        }
         for (int c = 0; c < (grey ? 1 : 3); ++c) {
             medium.beta0 = uniform[c];
             fogshop_.back().emplace_back(method, medium, world_.scene().camera.position,

@@ -10,6 +10,16 @@
 #include "medium/spherical_density_batch.h"
 
 namespace airlight {
+namespace {
+
+// Nothing times an endless depth is nothing.
+void add(const glm::dvec3& colour, float depth, glm::dvec3& sum) {
+    for (int c = 0; c < 3; ++c) {
+        if (colour[c] > 0) sum[c] += colour[c] * double(depth);
+    }
+}
+
+}  // namespace
 
 MediumDepths::MediumDepths(const SceneMedia& media, MediumExtent extent) {
     for (const MediumPart& part : media.parts()) {
@@ -56,20 +66,22 @@ void MediumDepths::operator()(std::size_t count, const glm::dvec3* origins,
         }
         exponential_height_depth_batch(count, a.data(), b.data(), c.data(), d.data(),
                                        result.data());
-        for (std::size_t i = 0; i < count; ++i) out[i] += layer.colour * double(result[i]);
+        for (std::size_t i = 0; i < count; ++i) add(layer.colour, result[i], out[i]);
     }
     for (const Atmosphere& atmosphere : atmospheres_) {
         for (std::size_t i = 0; i < count; ++i) {
             const glm::dvec3 from = origins[i] - atmosphere.shape.center;
             const double r = glm::length(from);
             a[i] = static_cast<float>(r - atmosphere.shape.radius);
-            b[i] = static_cast<float>(std::clamp(glm::dot(from, directions[i]) / r, -1.0, 1.0));
+            // At the center every direction leads up.
+            const double rise = r > 0 ? glm::dot(from, directions[i]) / r : 1;
+            b[i] = static_cast<float>(std::clamp(rise, -1.0, 1.0));
             c[i] = static_cast<float>(distances[i]);
         }
         spherical_depth_at_altitude_batch(static_cast<float>(atmosphere.shape.radius),
                                           static_cast<float>(atmosphere.shape.scale_height), count,
                                           a.data(), b.data(), c.data(), result.data());
-        for (std::size_t i = 0; i < count; ++i) out[i] += atmosphere.colour * double(result[i]);
+        for (std::size_t i = 0; i < count; ++i) add(atmosphere.colour, result[i], out[i]);
     }
 }
 
