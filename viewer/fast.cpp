@@ -125,6 +125,7 @@ void FastRenderer::light_bent(FastBlock& block, LayeredRadiance* out, FastCounts
             single.rays[0].direction = piece.direction;
             single.rays[0].distance = piece.distance;
             single.rays[0].meets = &piece != &path->pieces.back() || path->hit;
+            single.write_columns();
             LayeredRadiance sent;
             lamps_.light_media(single, &sent, counts);
             lamps_.light_particles(single, &sent, counts);
@@ -139,6 +140,7 @@ void FastRenderer::light_bent(FastBlock& block, LayeredRadiance* out, FastCounts
 
 void FastRenderer::shade_block(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const {
     trace(block, counts);
+    block.write_columns();
     map_.show(block, out);
     map_.light_surfaces(block, out, counts);
     map_.light_media(block, out, counts);

@@ -47,18 +47,26 @@ glm::dvec3 beside(const glm::dvec3& to_light, const glm::dvec3& direction) {
 
 }  // namespace
 
-// Of a ray between 0 and `distance`.
-void FastLamps::lit(std::size_t lamp, const glm::dvec3& origin, const glm::dvec3& direction,
-                    double distance, std::vector<RayInterval>& parts) const {
+// Of the rays that are not bent, to block.lit.
+void FastLamps::find_lit(std::size_t lamp, FastBlock& block) const {
+    block.lit.clear();
     const bool shaded = plan_.runs(Effect::shafts) && plan_.lights[lamp].shafts && world_.rays() &&
                         methods_.shafts != FastShafts::unshadowed;
-    if (!shaded) {
-        parts.assign(1, {0, distance});
-    } else if (methods_.shafts == FastShafts::intervals) {
-        world_.shadows()->lit(world_.scene().lights[lamp].position, origin, direction, distance,
-                              parts);
-    } else {
-        shadow_maps_[lamp].lit(origin, direction, distance, points_of(methods_.shafts), parts);
+    if (shaded && methods_.shafts != FastShafts::intervals) {
+        shadow_maps_[lamp].lit(block.origin, block.straight, points_of(methods_.shafts), block.lit);
+        return;
+    }
+    std::vector<RayInterval> parts;
+    for (std::uint32_t i = 0; i < block.rays.size(); ++i) {
+        const FastRay& ray = block.rays[i];
+        if (ray.bent) continue;
+        if (shaded) {
+            world_.shadows()->lit(world_.scene().lights[lamp].position, block.origin, ray.direction,
+                                  ray.distance, parts);
+        } else {
+            parts.assign(1, {0, ray.distance});
+        }
+        for (const RayInterval& part : parts) block.lit.push_back({i, part.begin, part.end});
     }
 }
 
@@ -113,7 +121,8 @@ void FastLamps::light_varying(std::size_t lamp, bool gaussians, bool others, Fas
     const int count = nodes_of(methods_, gaussians);
     const bool attenuates = plan_.runs(Effect::attenuation);
     MediumDepths depths(media);
-    std::vector<RayInterval> parts;
+    find_lit(lamp, block);
+    auto part = block.lit.begin();
     std::vector<RayNode> nodes;
     std::vector<glm::dvec3> points, to_lamp, origins, directions, depth, lamp_depth;
     std::vector<double> distances, places;
@@ -122,16 +131,17 @@ void FastLamps::light_varying(std::size_t lamp, bool gaussians, bool others, Fas
         if (ray.bent) continue;
         if (gaussians) ++counts[Effect::airlight_gaussians];
         if (others) ++counts[Effect::airlight_point];
+        const auto first = part;
+        while (part != block.lit.end() && part->ray == i) ++part;
         auto span =
             span_of_media(media, MediumExtent::any, block.origin, ray.direction, ray.distance);
         if (!span) continue;
         const auto dense =
             span_of_media(media, MediumExtent::limited, block.origin, ray.direction, ray.distance);
         const bool dims = end_of_light(depths, light.position, block.origin, ray.direction, *span);
-        lit(lamp, block.origin, ray.direction, ray.distance, parts);
         glm::dvec3 of_gaussians(0), of_others(0);
-        for (const RayInterval& part : parts) {
-            const RaySpan reach{std::max(part.begin, span->near), std::min(part.end, span->far)};
+        for (auto lit = first; lit != part; ++lit) {
+            const RaySpan reach{std::max(lit->begin, span->near), std::min(lit->end, span->far)};
             if (!(reach.near < reach.far)) continue;
             ray_nodes(media, light.position, block.origin, ray.direction, reach,
                       within(dense.value_or(reach), reach), dims, count, nodes);
@@ -178,32 +188,23 @@ void FastLamps::light_uniform(std::size_t lamp, FastBlock& block, LayeredRadianc
     const PointLight& light = world_.scene().lights[lamp];
     const glm::dvec3 to_light = light.position - block.origin;
     const glm::dvec3 extinction = *world_.media().everywhere();
-    struct Part {
-        std::uint32_t ray;
-        double begin;
-    };
-    std::vector<Part> parts;
-    std::vector<RayInterval> lit_parts;
+    find_lit(lamp, block);
+    const std::vector<LitPart>& parts = block.lit;
     auto& [gamma, distance, length, thickness, value] = block.columns;
     gamma.clear();
     distance.clear();
     length.clear();
-    for (std::uint32_t i = 0; i < block.rays.size(); ++i) {
-        const FastRay& ray = block.rays[i];
-        if (ray.bent) continue;
-        ++counts[Effect::airlight_point];
+    for (const LitPart& part : parts) {
+        const FastRay& ray = block.rays[part.ray];
         const double foot = glm::dot(to_light, ray.direction);
         const double height =
             std::max(glm::length(to_light - foot * ray.direction), 1e-9 * (1 + std::abs(foot)));
-        lit(lamp, block.origin, ray.direction, ray.distance, lit_parts);
-        for (const RayInterval& part : lit_parts) {
-            const double near = foot - part.begin;
-            parts.push_back({i, part.begin});
-            gamma.push_back(std::atan2(static_cast<float>(height), static_cast<float>(near)));
-            distance.push_back(static_cast<float>(std::sqrt(height * height + near * near)));
-            length.push_back(static_cast<float>(part.end - part.begin));
-        }
+        const double near = foot - part.begin;
+        gamma.push_back(std::atan2(static_cast<float>(height), static_cast<float>(near)));
+        distance.push_back(static_cast<float>(std::sqrt(height * height + near * near)));
+        length.push_back(static_cast<float>(part.end - part.begin));
     }
+    for (const FastRay& ray : block.rays) counts[Effect::airlight_point] += ray.bent ? 0 : 1;
     const std::size_t count = parts.size();
     const bool grey = extinction.x == extinction.y && extinction.x == extinction.z;
     const bool attenuates = plan_.runs(Effect::attenuation);

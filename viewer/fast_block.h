@@ -10,6 +10,7 @@
 
 #include "medium/particles.h"
 #include "viewer/effects.h"
+#include "viewer/lamp_shadow_map.h"
 #include "viewer/ray_path.h"
 #include "viewer/world.h"
 
@@ -52,7 +53,7 @@ struct FastRay {
 
 /// Rays from the camera and room for vectors of floats.
 struct FastBlock {
-    static constexpr std::size_t kRays = 256, kCells = 1024;
+    static constexpr std::size_t kRays = RayColumns::kSize, kCells = 1024;
 
     struct Cell {
         bool known = false;
@@ -63,10 +64,25 @@ struct FastBlock {
     glm::dvec3 origin{0};
     std::vector<FastRay> rays;
     std::vector<std::uint32_t> hits;  ///< rays that meet a surface
+    RayColumns straight;              ///< the rays, but for bent ones: written once they are traced
+    std::vector<LitPart> lit;
     std::array<std::vector<float>, 5> columns;
     std::vector<Cell> cells;
     std::vector<glm::dvec3> points;
     std::vector<std::uint8_t> blocked;
+
+    void write_columns() {
+        straight.count = rays.size();
+        for (std::size_t i = 0; i < kRays; ++i) {
+            const bool asked = i < rays.size() && !rays[i].bent;
+            straight.distance[i] = asked ? static_cast<float>(rays[i].distance) : 0;
+            if (!asked) continue;
+            straight.x[i] = static_cast<float>(rays[i].direction.x);
+            straight.y[i] = static_cast<float>(rays[i].direction.y);
+            straight.z[i] = static_cast<float>(rays[i].direction.z);
+        }
+    }
+
     /// The particle of a cell, remembered: neighbouring rays pass the same cells.
     const Particle& particle(const std::int64_t cell[3], const ParticleOptions& options) {
         if (cells.empty()) cells.resize(kCells);

@@ -47,8 +47,7 @@ class FastLamps {
     void light_varying(std::size_t lamp, bool gaussians, bool others, FastBlock& block,
                        LayeredRadiance* out, FastCounts& counts) const;
     void build_fogshop(FastCounts& counts);
-    void lit(std::size_t lamp, const glm::dvec3& origin, const glm::dvec3& direction,
-             double distance, std::vector<RayInterval>& parts) const;
+    void find_lit(std::size_t lamp, FastBlock& block) const;
     glm::dvec3 depth(const glm::dvec3& from, const glm::dvec3& direction, double distance) const;
 
     const World& world_;

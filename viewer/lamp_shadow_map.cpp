@@ -3,17 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <limits>
 
-#include "core/constants.h"
 #include "core/parallel.h"
 #include "prt/ray_packets.h"
 
 namespace airlight {
 namespace {
-
-constexpr int kHalvings = 5;
 
 // Of a side of the cube: its axis and the two across, in cyclic order.
 struct Side {
@@ -52,11 +47,12 @@ LampShadowMap::LampShadowMap(const RayScene& scene, const glm::dvec3& lamp, int 
     });
 }
 
-// Of the point from_lamp / scale, in the frame of the lamp.
-bool LampShadowMap::sees(const glm::vec3& v, float scale) const {
+bool LampShadowMap::sees(const glm::dvec3& point) const {
+    const glm::vec3 v(point - lamp_);
     const float ax = std::abs(v.x), ay = std::abs(v.y), az = std::abs(v.z);
     const int axis = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
     const float along = std::abs(v[axis]), half = 0.5f * static_cast<float>(size_);
+    if (!(along > 0)) return true;
     const float to_texel = half / along;
     const int u = axis == 2 ? 0 : axis + 1, w = axis == 0 ? 2 : axis - 1;
     const int column = std::min(static_cast<int>(v[u] * to_texel + half), size_ - 1);
@@ -64,53 +60,7 @@ bool LampShadowMap::sees(const glm::vec3& v, float scale) const {
     const int side = 2 * axis + (v[axis] < 0 ? 1 : 0);
     const float depth = depths_[static_cast<std::size_t>((side * size_ + row) * size_ + column)];
     // The directions of the sides are 1 along their axis, and so depths are along it.
-    return !(along > depth * scale * (1 + 1 / half));
-}
-
-bool LampShadowMap::sees(const glm::dvec3& point) const {
-    return sees(glm::vec3(point - lamp_), 1);
-}
-
-// With u the angle at which the lamp sees a point of the ray, that point is height tan(u) along
-// from the foot: in the lamp's frame cos(u) times it is cos(u) foot + sin(u) height direction.
-void LampShadowMap::lit(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-                        int points, std::vector<RayInterval>& parts) const {
-    parts.clear();
-    const double foot = glm::dot(lamp_ - origin, direction);
-    const glm::dvec3 across = origin + foot * direction - lamp_;
-    const double height = std::max(glm::length(across), 1e-9 * (1 + std::abs(foot)));
-    const double first = std::atan(-foot / height);
-    const double last = std::isfinite(distance) ? std::atan((distance - foot) / height) : kPi / 2;
-    const glm::vec3 at_foot(across), ahead(height * direction);
-    const auto sees_at = [&](float cosine, float sine) {
-        return sees(cosine * at_foot + sine * ahead, cosine);
-    };
-    const auto place = [&](double u) {
-        return std::clamp(foot + height * std::tan(u), 0.0, distance);
-    };
-    const double step = (last - first) / points;
-    const auto border = [&](double seen, double unseen) {
-        for (int i = 0; i < kHalvings; ++i) {
-            const double u = 0.5 * (seen + unseen);
-            const bool there =
-                sees_at(static_cast<float>(std::cos(u)), static_cast<float>(std::sin(u)));
-            (there ? seen : unseen) = u;
-        }
-        return place(0.5 * (seen + unseen));
-    };
-    const double turn_cosine = std::cos(step), turn_sine = std::sin(step);
-    double cosine = std::cos(first + 0.5 * step), sine = std::sin(first + 0.5 * step);
-    bool before = false;
-    for (int i = 0; i < points; ++i) {
-        const double u = first + (i + 0.5) * step;
-        const bool here = sees_at(static_cast<float>(cosine), static_cast<float>(sine));
-        if (here && !before) parts.push_back({i == 0 ? 0 : border(u, u - step), distance});
-        if (!here && before) parts.back().end = border(u - step, u);
-        before = here;
-        const double next = cosine * turn_cosine - sine * turn_sine;
-        sine = sine * turn_cosine + cosine * turn_sine;
-        cosine = next;
-    }
+    return !(along > depth * (1 + 1 / half));
 }
 
 }  // namespace airlight

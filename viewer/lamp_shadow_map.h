@@ -3,18 +3,37 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
 #include "prt/ray_scene.h"
-#include "viewer/ray_shadows.h"
 
 namespace airlight {
+
+/// Rays from one point, in columns of whole vectors: those from `count` on have the distance 0.
+struct RayColumns {
+    static constexpr std::size_t kSize = 256;
+
+    std::size_t count = 0;
+    /// Of unit directions, and to where the rays end, in [0, inf]; nothing is asked of those that
+    /// end at 0.
+    alignas(64) float x[kSize] = {}, y[kSize] = {}, z[kSize] = {}, distance[kSize] = {};
+};
+
+/// A part of a ray that a lamp reaches.
+struct LitPart {
+    std::uint32_t ray = 0;
+    double begin = 0, end = 0;
+};
 
 /// A map of [Shafts] sec. 3, six sides of it. A texel holds the distance to the nearest triangle
 /// along the ray through its middle.
 class LampShadowMap {
   public:
+    /// Points on a ray: a power of two.
+    static constexpr int kMostPoints = 64;
+
     LampShadowMap() = default;
     /// `size` texels on a side of the cube: 24 size^2 bytes, 20 to 50 ns a texel.
     LampShadowMap(const RayScene& scene, const glm::dvec3& lamp, int size);
@@ -23,15 +42,14 @@ class LampShadowMap {
     /// the border of a shadow, and for points as close behind a triangle as it is wide.
     bool sees(const glm::dvec3& point) const;
 
-    /// The parts of a ray that the lamp sees, as RayShadows::lit() has them: of `points` points,
-    /// even in the angle at which the lamp sees the ray, those are joined that it sees; borders
-    /// between them come from halving. What lies between two points unseen is missed.
-    void lit(const glm::dvec3& origin, const glm::dvec3& direction, double distance, int points,
-             std::vector<RayInterval>& parts) const;
+    /// Appends the parts of rays from `origin` that the lamp sees, ray by ray and ascending: of
+    /// `points` points, even in the angle at which the lamp sees the ray, those are joined that it
+    /// sees; borders between them come from halving, to 1/64 of the angle between two. What lies
+    /// between two points unseen is missed. In floats, a vector of rays at a time.
+    void lit(const glm::dvec3& origin, const RayColumns& rays, int points,
+             std::vector<LitPart>& parts) const;
 
   private:
-    bool sees(const glm::vec3& from_lamp, float scale) const;
-
     glm::dvec3 lamp_{0};
     int size_ = 0;
     std::vector<float> depths_;  ///< (side, row, column)
