@@ -18,6 +18,7 @@ namespace {
 constexpr double kLeastExponent = 1, kLargestExponent = 1000;
 // fogshop takes the square of their number to build.
 constexpr std::size_t kMostBlobs = 512;
+constexpr double kDensest = 1e100;
 
 double clamped_exponent(double exponent) {
     return std::clamp(exponent, kLeastExponent, kLargestExponent);
@@ -247,6 +248,8 @@ void FastLamps::add_scattered(std::size_t lamp, FastBlock& block,
                                   part.depth(ray.hit.position, arrival.to_light, arrival.distance) /
                                   arrival.distance;
                 }
+                // Nothing comes through endless depths.
+                scattering = glm::min(scattering, kDensest);
             }
             const float cosine = static_cast<float>(glm::dot(axis, arrival.to_light));
             const float sine = static_cast<float>(glm::length(glm::cross(axis, arrival.to_light)));

@@ -32,13 +32,16 @@ double distance_at_depth(const SceneMedia& media, const glm::dvec3& origin,
     double low = 0, below = 0, high = end;
     if (!std::isfinite(above) || !std::isfinite(end)) {
         // Metres are the scale of scenes.
-        for (high = 1; high < end; high *= 4) {
-            above = depth_to(high);
-            if (above > depth) break;
-            low = high;
-            below = above;
+        for (double t = 1; t < end; t *= 4) {
+            const double here = depth_to(t);
+            if (here > depth) {
+                high = t;
+                above = here;
+                break;
+            }
+            low = t;
+            below = here;
         }
-        high = std::min(high, end);
     }
     double t =
         low + (high - low) * (std::isfinite(above) ? (depth - below) / (above - below) : 0.5);

@@ -82,6 +82,9 @@ class EquiangularPaths {
 
     double distance(double xi) const;
     double pdf(double t) const;
+    /// The lamp is taken to be no nearer to the ray than this, by the rounding of coordinates, lest
+    /// its light be endless.
+    double height() const { return height_; }
 
   private:
     double foot_, height_, begin_angle_, end_angle_, end_;

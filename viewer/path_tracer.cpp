@@ -140,10 +140,10 @@ void PathTracer::lamps_in_media(Path& path, double end, double collision, Sample
                          const MediaPoint& point, const glm::dvec3& transmittance) {
         const PointLight& light = *lamp.light;
         const glm::dvec3 x = path.origin + t * path.direction, way = light.position - x;
-        const double distance = glm::length(way);
+        const double length = glm::length(way), distance = std::max(length, even.height());
         const double pdf = even.pdf(t) + colours.pdf(point.extinction(), transmittance);
-        if (!(distance > 0 && pdf > 0)) return;
-        const glm::dvec3 to_lamp = way / distance;
+        if (!(length > 0 && pdf > 0)) return;
+        const glm::dvec3 to_lamp = way / length;
         const double cosine = std::clamp(glm::dot(to_lamp, path.direction), -1.0, 1.0);
         const glm::dvec3 sent = point.sent_at_cosine(cosine) * transmittance * (lamp.weight / pdf);
         ++counts.line_points;
@@ -259,7 +259,10 @@ glm::dvec3 PathTracer::radiance(const glm::dvec3& origin, const glm::dvec3& dire
                 continue;
             }
             const glm::dvec3 left = media.transmittance(path.origin, path.direction, end);
-            path.throughput *= left / colours.leaving(left);
+            const double leaving = colours.leaving(left);
+            // Where the path ends at a layer thinner than distances are told apart.
+            if (!(leaving > 0)) break;
+            path.throughput *= left / leaving;
         }
         if (!hit) {
             if (!sampler) break;

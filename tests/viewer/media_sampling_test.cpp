@@ -54,6 +54,22 @@ TEST(MediaSampling, DistancesHaveTheirDepths) {
     EXPECT_GT(left, 500);
 }
 
+// Beyond the border of a layer of 1e-12 m depths are endless; where it lies between the distances
+// that are tried first matters not.
+TEST(MediaSampling, CollisionsAreAtTheBordersOfThinLayers) {
+    SceneMedium layer;
+    layer.kind = SceneExponentialHeight{glm::dvec3(0.1), 1e-12, glm::dvec3(1)};
+    const SceneMedia media({layer});
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(1, -1, 0.3));
+    for (const double height : {1e-6, 0.3, 1.1, 7.0, 5e3}) {
+        const double border = height / -direction.y;
+        for (const double end : {1.3 * border, 1.9 * border, 40 * border, kInfinite}) {
+            const double t = distance_at_depth(media, {0, height, 0}, direction, end, 1, 1.5);
+            EXPECT_NEAR(t, border, 1e-9 + 1e-14 * border) << height << " " << end;
+        }
+    }
+}
+
 TEST(MediaSampling, AnglesFollowTheirDensity) {
     const SceneMedia media = mixed_media();
     MediaPoint point;
