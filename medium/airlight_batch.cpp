@@ -87,6 +87,57 @@ HWY_INLINE Vec short_ray_integral(Vec y, Vec c, Vec x_end) {
                    hn::Mul(denominators[0], denominators[1]));
 }
 
+// The triangle of medium/ray_triangle.h, lengths over that from viewer to source.
+struct LaneTriangle {
+    Vec c;          // sin(gamma / 2), up to 1
+    Vec end;        // length of the ray
+    Vec projected;  // of the ray beyond its point nearest to the source
+    Vec distance;   // from the source to the end of the ray
+};
+
+// A ray no longer than what can be seen of an endless one.
+HWY_INLINE Vec seen_length(Vec length, Vec away) {
+    return hn::Min(length, hn::Mul(away, hn::Set(Tag(), 1e15f)));
+}
+
+// e^-before airlight.
+template <class RayIntegral>
+HWY_INLINE Vec airlight_of(const RayIntegral& infinite, const LaneTriangle& triangle, Vec t_sv,
+                           Vec before) {
+    const Tag d;
+    const Vec one = hn::Set(d, 1.0f), c = triangle.c, end = triangle.end;
+    const Vec distance = triangle.distance, projected = triangle.projected;
+    const Vec rho = hn::Add(c, c);
+    const Vec y = hn::Mul(rho, t_sv);
+    const Vec perimeter = hn::Add(hn::Add(end, distance), one);
+    const auto ends_near = hn::Lt(projected, hn::Zero(d));
+    // For a ray that ends near, gamma < pi / 2 and the square of cos(gamma / 2) is over half.
+    const Vec top = hn::IfThenElse(ends_near, hn::Mul(rho, hn::NegMulAdd(c, c, one)),
+                                   hn::Add(distance, projected));
+    const Vec bottom = hn::IfThenElse(ends_near, hn::Sub(distance, projected), rho);
+    const Vec x_end = hn::Min(hn::Div(hn::Mul(hn::Add(end, end), top), hn::Mul(bottom, perimeter)),
+                              hn::Set(d, 1e18f));
+    const Vec path = hn::Mul(y, x_end);
+    const Vec along = hn::Add(x_end, c);
+    const Vec from_end = hn::Sqrt(hn::MulAdd(x_end, hn::Add(along, c), one));
+    const Vec whole = infinite(y, c);
+    const Vec tail =
+        hn::Mul(hn::Div(hn::Exp(d, hn::Neg(path)), from_end),
+                infinite(hn::Mul(y, from_end), hn::Min(hn::Div(along, from_end), one)));
+    const auto is_short = hn::Le(hn::MulAdd(hn::Set(d, 1.5f), path, x_end), hn::Set(d, kShort));
+    const Vec h = hn::IfThenElse(is_short, short_ray_integral(y, c, x_end), hn::Sub(whole, tail));
+    // Two equal factors, neither denormal where their product is not.
+    const Vec transmittance = hn::Exp(d, hn::Mul(hn::Set(d, -0.5f), hn::Add(t_sv, before)));
+    return hn::Mul(
+        hn::Mul(hn::Div(h, y), hn::Mul(transmittance, hn::Set(d, static_cast<float>(0.5 / kPi)))),
+        transmittance);
+}
+
+HWY_INLINE Mask serves_lengths(Vec t_sv, Vec t_vp) {
+    return hn::And(within(t_sv, kLeastThickness, kLargestThickness),
+                   hn::Ge(t_vp, hn::Set(Tag(), kLeastThickness)));
+}
+
 template <class RayIntegral>
 struct AirlightKernel {
     static constexpr std::size_t kInputs = 3;
@@ -96,53 +147,65 @@ struct AirlightKernel {
 
     HWY_INLINE Vec operator()(Tag d, const Vec (&x)[3], Mask* served) const {
         const Vec gamma = x[0], t_sv = x[1], t_vp = x[2];
-        *served =
-            hn::And(hn::And(within(gamma, kLeastGamma, static_cast<float>(detail::kPiOfFloat)),
-                            within(t_sv, kLeastThickness, kLargestThickness)),
-                    hn::Ge(t_vp, hn::Set(d, kLeastThickness)));
-        const Vec one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
-        // The triangle, as in medium/ray_triangle.h.
-        const Vec c = hn::Min(sin_half(gamma), one);
-        const Vec rho = hn::Add(c, c);
-        const Vec y = hn::Mul(rho, t_sv);
-        const Vec per_sv = hn::Div(one, t_sv);
-        // Beyond this length the end of the ray cannot be seen.
-        const Vec length = hn::Min(t_vp, hn::Mul(t_sv, hn::Set(d, 1e15f)));
+        *served = hn::And(within(gamma, kLeastGamma, static_cast<float>(detail::kPiOfFloat)),
+                          serves_lengths(t_sv, t_vp));
+        const Vec one = hn::Set(d, 1.0f), per_sv = hn::Div(one, t_sv);
+        const Vec c = hn::Min(sin_half(gamma), one), rho = hn::Add(c, c);
+        const Vec rho_squared = hn::Mul(rho, rho);
+        const Vec length = seen_length(t_vp, t_sv);
         const Vec end = hn::Mul(length, per_sv);
         const Vec beyond = hn::Mul(hn::Sub(length, t_sv), per_sv);
-        const Vec rho_squared = hn::Mul(rho, rho);
         const Vec distance = hn::Sqrt(hn::MulAdd(beyond, beyond, hn::Mul(rho_squared, end)));
-        const Vec projected = hn::MulAdd(half, rho_squared, beyond);
-        const Vec perimeter = hn::Add(hn::Add(end, distance), one);
-        const auto ends_near = hn::Lt(projected, hn::Zero(d));
-        // For a ray that ends near, gamma < pi / 2 and the square of cos(gamma / 2) is over half.
-        const Vec top = hn::IfThenElse(ends_near, hn::Mul(rho, hn::NegMulAdd(c, c, one)),
-                                       hn::Add(distance, projected));
-        const Vec bottom = hn::IfThenElse(ends_near, hn::Sub(distance, projected), rho);
-        const Vec x_end =
-            hn::Min(hn::Div(hn::Mul(hn::Add(end, end), top), hn::Mul(bottom, perimeter)),
-                    hn::Set(d, 1e18f));
-        const Vec path = hn::Mul(y, x_end);
-        const Vec along = hn::Add(x_end, c);
-        const Vec from_end = hn::Sqrt(hn::MulAdd(x_end, hn::Add(along, c), one));
-        const Vec whole = infinite(y, c);
-        const Vec tail =
-            hn::Mul(hn::Div(hn::Exp(d, hn::Neg(path)), from_end),
-                    infinite(hn::Mul(y, from_end), hn::Min(hn::Div(along, from_end), one)));
-        const auto is_short = hn::Le(hn::MulAdd(hn::Set(d, 1.5f), path, x_end), hn::Set(d, kShort));
-        const Vec h =
-            hn::IfThenElse(is_short, short_ray_integral(y, c, x_end), hn::Sub(whole, tail));
-        // Two equal factors, neither denormal where their product is not.
-        const Vec transmittance = hn::Exp(d, hn::Mul(hn::Set(d, -0.5f), t_sv));
-        return hn::Mul(hn::Mul(hn::Div(h, y),
-                               hn::Mul(transmittance, hn::Set(d, static_cast<float>(0.5 / kPi)))),
-                       transmittance);
+        const Vec projected = hn::MulAdd(hn::Set(d, 0.5f), rho_squared, beyond);
+        return airlight_of(infinite, {c, end, projected, distance}, t_sv, hn::Zero(d));
+    }
+};
+
+struct AirlightPartKernel {
+    static constexpr std::size_t kInputs = 4;
+    float extinction;
+
+    float operator()(const float (&x)[4]) const {
+        const double sigma = extinction, foot = x[0], height = x[1], begin = x[2], length = x[3];
+        return static_cast<float>(std::exp(-sigma * begin) *
+                                  ::airlight::airlight(std::atan2(height, foot),
+                                                       sigma * std::hypot(height, foot),
+                                                       sigma * length));
+    }
+
+    HWY_INLINE Vec operator()(Tag d, const Vec (&x)[4], Mask* served) const {
+        const Vec foot = x[0], height = x[1], sigma = hn::Set(d, extinction);
+        const Vec squared = hn::Mul(height, height);
+        const Vec away = hn::Sqrt(hn::MulAdd(foot, foot, squared));
+        // 2 away^2 sin(gamma / 2)^2 is away (away - foot), and that times away + foot is away
+        // height^2.
+        const Vec sum = hn::Add(away, hn::Abs(foot)), twice = hn::Add(away, away);
+        const Vec wide = hn::Sqrt(hn::Div(sum, twice));
+        const Vec narrow = hn::Div(height, hn::Sqrt(hn::Mul(twice, sum)));
+        const Vec c = hn::IfThenElse(hn::Lt(foot, hn::Zero(d)), wide, narrow);
+        const Vec t_sv = hn::Mul(sigma, away);
+        *served = hn::And(hn::And(hn::Ge(c, hn::Set(d, kLeastGamma)),
+                                  within(away, kLeastThickness, kLargestThickness)),
+                          serves_lengths(t_sv, hn::Mul(sigma, x[3])));
+        const Vec per_away = hn::Div(hn::Set(d, 1.0f), away);
+        const Vec length = seen_length(x[3], away), beyond = hn::Sub(length, foot);
+        const Vec distance = hn::Sqrt(hn::MulAdd(beyond, beyond, squared));
+        return airlight_of(FittedRayIntegral(),
+                           {hn::Min(c, hn::Set(d, 1.0f)), hn::Mul(length, per_away),
+                            hn::Mul(beyond, per_away), hn::Mul(distance, per_away)},
+                           t_sv, hn::Mul(sigma, x[2]));
     }
 };
 
 HWY_ATTR void run_airlight(std::size_t count, const float* gamma, const float* t_sv,
                            const float* t_vp, float* out) {
     batch(count, {gamma, t_sv, t_vp}, out, AirlightKernel<FittedRayIntegral>{});
+}
+
+HWY_ATTR void run_airlight_parts(float extinction, std::size_t count, const float* foot,
+                                 const float* height, const float* begin, const float* length,
+                                 float* out) {
+    batch(count, {foot, height, begin, length}, out, AirlightPartKernel{extinction});
 }
 
 HWY_ATTR void run_airlight_table(const float* values, int size, std::size_t count,
@@ -159,11 +222,18 @@ HWY_AFTER_NAMESPACE();
 namespace airlight {
 
 HWY_EXPORT(run_airlight);
+HWY_EXPORT(run_airlight_parts);
 HWY_EXPORT(run_airlight_table);
 
 void airlight_batch(std::size_t count, const float* gamma, const float* t_sv, const float* t_vp,
                     float* out) {
     HWY_DYNAMIC_DISPATCH(run_airlight)(count, gamma, t_sv, t_vp, out);
+}
+
+void airlight_parts_batch(std::size_t count, float extinction, const float* foot,
+                          const float* height, const float* begin, const float* length,
+                          float* out) {
+    HWY_DYNAMIC_DISPATCH(run_airlight_parts)(extinction, count, foot, height, begin, length, out);
 }
 
 AirlightBatchTable::AirlightBatchTable(int size)

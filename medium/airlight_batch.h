@@ -29,6 +29,15 @@ namespace airlight {
 void airlight_batch(std::size_t count, const float* gamma, const float* t_sv, const float* t_vp,
                     float* out);
 
+/// The same of parts of rays, as their viewers see them: out[i] = e^(-extinction begin)
+/// airlight(gamma, extinction d, extinction length), where the lamp stands `height` off the line of
+/// the ray, `foot` ahead of the beginning of the part, in (-inf, inf): gamma = atan2(height, foot),
+/// d^2 = height^2 + foot^2. `begin` in [0, inf) is where the part begins on the ray. No angle is
+/// computed. Relative error 6e-6, and that of rounding the thickness of the way, 1.3e-5 where e^-80
+/// is left; the rest as above.
+void airlight_parts_batch(std::size_t count, float extinction, const float* foot,
+                          const float* height, const float* begin, const float* length, float* out);
+
 /// The same through a table of size x size floats, bilinear, instead of the fit.
 ///
 /// It holds H(y, theta, inf) (y + 2) (medium/ray_integral.h) over sqrt(y / (y + 2)) and cos(theta),

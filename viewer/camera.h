@@ -18,4 +18,15 @@ glm::dmat3 camera_axes(const Camera& camera);
 glm::dvec3 camera_direction(const Camera& camera, const glm::dmat3& axes, int width, int height,
                             double x, double y);
 
+/// camera_direction() for many points of a picture.
+class PictureRays {
+  public:
+    PictureRays(const Camera& camera, int width, int height);
+    PictureRays(const Camera& camera, const glm::dmat3& axes, int width, int height);
+    glm::dvec3 operator()(double x, double y) const;
+
+  private:
+    glm::dvec3 corner_, right_, down_;  ///< before the eye at a distance of 1; by pixel
+};
+
 }  // namespace airlight

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "prt/ray_packets.h"
-#include "viewer/medium_depths.h"
 
 namespace airlight {
 namespace {
@@ -51,7 +50,6 @@ void FastRenderer::trace(FastBlock& block, FastCounts& counts) const {
     block.paths.clear();
     const SceneSlabs& slabs = world_.slabs();
     const bool refracts = plan_.runs(Effect::slab) && !slabs.empty();
-    MediumDepths depths(world_.media());
     const bool attenuates = plan_.runs(Effect::attenuation) && !world_.media().empty();
     for (std::size_t i = 0; i < count; ++i) {
         FastRay& ray = block.rays[i];
@@ -100,7 +98,7 @@ void FastRenderer::trace_bent(FastRay& ray, FastBlock& block, FastCounts& counts
 }
 
 // Media along the pieces of bent rays.
-void FastRenderer::light_bent(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const {
+void FastRenderer::light_bent(FastBlock& block, const RaySums& out, FastCounts& counts) const {
     if (block.paths.empty()) return;
     auto path = block.paths.begin();
     FastBlock single;
@@ -127,9 +125,10 @@ void FastRenderer::light_bent(FastBlock& block, LayeredRadiance* out, FastCounts
             single.rays[0].meets = &piece != &path->pieces.back() || path->hit;
             single.write_columns();
             LayeredRadiance sent;
-            lamps_.light_media(single, &sent, counts);
-            lamps_.light_particles(single, &sent, counts);
-            map_.light_media(single, &sent, counts);
+            const RaySums sum{&sent, {}};
+            lamps_.light_media(single, sum, counts);
+            lamps_.light_particles(single, sum, counts);
+            map_.light_media(single, sum, counts);
             for (std::size_t l = 0; l < kRadianceLayerCount; ++l) {
                 out[i].layers[l] += piece.throughput * sent.layers[l];
             }
@@ -138,7 +137,7 @@ void FastRenderer::light_bent(FastBlock& block, LayeredRadiance* out, FastCounts
     }
 }
 
-void FastRenderer::shade_block(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const {
+void FastRenderer::shade_block(FastBlock& block, const RaySums& out, FastCounts& counts) const {
     trace(block, counts);
     block.write_columns();
     map_.show(block, out);
@@ -150,18 +149,25 @@ void FastRenderer::shade_block(FastBlock& block, LayeredRadiance* out, FastCount
     light_bent(block, out, counts);
 }
 
-void FastRenderer::shade(const glm::dvec3* directions, std::size_t count, LayeredRadiance* out,
-                         FastCounts& counts) const {
+void FastRenderer::shade(const glm::dvec3* directions, std::size_t count, std::size_t together,
+                         LayeredRadiance* out, FastCounts& counts) const {
+    std::fill_n(out, count, LayeredRadiance());
     FastBlock block;
     block.origin = world_.scene().camera.position;
-    for (std::size_t begin = 0; begin < count; begin += FastBlock::kRays) {
-        const std::size_t size = std::min(FastBlock::kRays, count - begin);
+    RaySums sums;
+    sums.sums = out;
+    std::size_t sum = 0, in_sum = 0;
+    for (std::size_t begin = 0; begin < count * together; begin += FastBlock::kRays) {
+        const std::size_t size = std::min(FastBlock::kRays, count * together - begin);
         block.rays.resize(size);
         for (std::size_t i = 0; i < size; ++i) {
             block.rays[i].direction = directions[begin + i];
-            out[begin + i] = LayeredRadiance();
+            sums.number[i] = static_cast<std::uint32_t>(sum);
+            if (++in_sum < together) continue;
+            in_sum = 0;
+            ++sum;
         }
-        shade_block(block, out + begin, counts);
+        shade_block(block, sums, counts);
     }
 }
 

@@ -41,11 +41,12 @@ class FastRenderer {
     FastRenderer(const FastRenderer&) = delete;
     FastRenderer& operator=(const FastRenderer&) = delete;
 
-    /// Radiance that comes to the camera along `count` unit directions. Neighbours should go
-    /// almost the same way. The result is the same however many threads call, each with arrays of
-    /// its own; a ray's may depend on its block in whether it grazes a triangle.
-    void shade(const glm::dvec3* directions, std::size_t count, LayeredRadiance* out,
-               FastCounts& counts) const;
+    /// Radiance that comes to the camera along count * together unit directions: out[i] is the sum
+    /// of the i-th `together` of them. Neighbours should go almost the same way. The result is the
+    /// same however many threads call, each with arrays of its own; a ray's may depend on its block
+    /// in whether it grazes a triangle.
+    void shade(const glm::dvec3* directions, std::size_t count, std::size_t together,
+               LayeredRadiance* out, FastCounts& counts) const;
 
     /// What the constructor built.
     const FastCounts& built() const { return built_; }
@@ -53,8 +54,8 @@ class FastRenderer {
   private:
     void trace(FastBlock& block, FastCounts& counts) const;
     void trace_bent(FastRay& ray, FastBlock& block, FastCounts& counts) const;
-    void light_bent(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
-    void shade_block(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
+    void light_bent(FastBlock& block, const RaySums& out, FastCounts& counts) const;
+    void shade_block(FastBlock& block, const RaySums& out, FastCounts& counts) const;
 
     const World& world_;
     Plan plan_;

@@ -70,7 +70,7 @@ void FastLamps::find_lit(std::size_t lamp, FastBlock& block) const {
     }
 }
 
-void FastLamps::light_media(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const {
+void FastLamps::light_media(FastBlock& block, const RaySums& out, FastCounts& counts) const {
     if (world_.media().empty()) return;
     for (std::size_t lamp = 0; lamp < world_.scene().lights.size(); ++lamp) {
         const bool gaussians = plan_.runs(Effect::airlight_gaussians) &&
@@ -90,7 +90,7 @@ void FastLamps::light_media(FastBlock& block, LayeredRadiance* out, FastCounts& 
 }
 
 // [Zhou07] eq. 8 to 17 for each channel, the same for all where all media are grey.
-void FastLamps::light_fogshop(std::size_t lamp, bool others, FastBlock& block, LayeredRadiance* out,
+void FastLamps::light_fogshop(std::size_t lamp, bool others, FastBlock& block, const RaySums& out,
                               FastCounts& counts) const {
     const PointLight& light = world_.scene().lights[lamp];
     const std::vector<GaussianAirlightEvaluator>& channels = fogshop_[lamp];
@@ -115,7 +115,7 @@ void FastLamps::light_fogshop(std::size_t lamp, bool others, FastBlock& block, L
 }
 
 void FastLamps::light_varying(std::size_t lamp, bool gaussians, bool others, FastBlock& block,
-                              LayeredRadiance* out, FastCounts& counts) const {
+                              const RaySums& out, FastCounts& counts) const {
     const PointLight& light = world_.scene().lights[lamp];
     const SceneMedia& media = world_.media();
     const int count = nodes_of(methods_, gaussians);
@@ -183,32 +183,30 @@ void FastLamps::light_varying(std::size_t lamp, bool gaussians, bool others, Fas
 }
 
 // Each lit part of a ray as seen from its own beginning, as the reference has it.
-void FastLamps::light_uniform(std::size_t lamp, FastBlock& block, LayeredRadiance* out,
+void FastLamps::light_uniform(std::size_t lamp, FastBlock& block, const RaySums& out,
                               FastCounts& counts) const {
     const PointLight& light = world_.scene().lights[lamp];
     const glm::dvec3 to_light = light.position - block.origin;
     const glm::dvec3 extinction = *world_.media().everywhere();
     find_lit(lamp, block);
     const std::vector<LitPart>& parts = block.lit;
-    auto& [gamma, distance, length, thickness, value] = block.columns;
-    gamma.clear();
-    distance.clear();
-    length.clear();
-    for (const LitPart& part : parts) {
-        const FastRay& ray = block.rays[part.ray];
-        const double foot = glm::dot(to_light, ray.direction);
-        const double height =
-            std::max(glm::length(to_light - foot * ray.direction), 1e-9 * (1 + std::abs(foot)));
-        const double near = foot - part.begin;
-        gamma.push_back(std::atan2(static_cast<float>(height), static_cast<float>(near)));
-        distance.push_back(static_cast<float>(std::sqrt(height * height + near * near)));
-        length.push_back(static_cast<float>(part.end - part.begin));
+    auto& [foot, height, begin, length, value] = block.columns;
+    const std::size_t count = parts.size();
+    for (std::vector<float>* column : {&foot, &height, &begin, &length, &value}) {
+        column->resize(count);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        const glm::dvec3& direction = block.rays[parts[k].ray].direction;
+        const double ahead = glm::dot(to_light, direction);
+        const double off = glm::length(to_light - ahead * direction);
+        foot[k] = static_cast<float>(ahead - parts[k].begin);
+        height[k] = static_cast<float>(std::max(off, kLeastHeight * (1 + std::abs(ahead))));
+        begin[k] = static_cast<float>(parts[k].begin);
+        length[k] = static_cast<float>(parts[k].end - parts[k].begin);
     }
     for (const FastRay& ray : block.rays) counts[Effect::airlight_point] += ray.bent ? 0 : 1;
-    const std::size_t count = parts.size();
     const bool grey = extinction.x == extinction.y && extinction.x == extinction.z;
     const bool attenuates = plan_.runs(Effect::attenuation);
-    value.resize(count);
     for (const MediumPart& medium : world_.media().parts()) {
         const glm::dvec3 scattering = medium.albedo() * *medium.everywhere();
         if (!(largest(scattering) > 0)) continue;
@@ -216,25 +214,21 @@ void FastLamps::light_uniform(std::size_t lamp, FastBlock& block, LayeredRadianc
             // Without attenuation a medium so thin that it has none.
             const double sigma = attenuates ? extinction[c] : 1e-9 * extinction[c];
             if (!(sigma > 0)) continue;
-            thickness.assign(2 * count, 0);
-            for (std::size_t k = 0; k < count; ++k) {
-                thickness[k] = static_cast<float>(sigma) * distance[k];
-                thickness[count + k] = static_cast<float>(sigma) * length[k];
-            }
             if (medium.phase().kind() == PhaseKind::isotropic) {
-                airlight_batch(count, gamma.data(), thickness.data(), thickness.data() + count,
-                               value.data());
+                airlight_parts_batch(count, static_cast<float>(sigma), foot.data(), height.data(),
+                                     begin.data(), length.data(), value.data());
             } else {
                 for (std::size_t k = 0; k < count; ++k) {
-                    value[k] =
-                        static_cast<float>(airlight(double(gamma[k]), double(thickness[k]),
-                                                    double(thickness[count + k]), medium.phase()));
+                    const double ahead = foot[k], off = height[k];
+                    const double seen =
+                        airlight(std::atan2(off, ahead), sigma * std::hypot(off, ahead),
+                                 sigma * double(length[k]), medium.phase());
+                    value[k] = static_cast<float>(std::exp(-sigma * parts[k].begin) * seen);
                 }
             }
             const glm::dvec3 factor = sigma * light.intensity * scattering;
             for (std::size_t k = 0; k < count; ++k) {
-                double seen = value[k];
-                if (parts[k].begin > 0) seen *= std::exp(-sigma * parts[k].begin);
+                const double seen = value[k];
                 glm::dvec3& sum = out[parts[k].ray][RadianceLayer::airlight_point];
                 if (grey) {
                     sum += seen * factor;

@@ -51,6 +51,14 @@ struct FastRay {
     glm::dvec3 transmittance{1};  ///< to where it ends
 };
 
+/// Where the light of a block's rays is added: those of a pixel share a sum.
+struct RaySums {
+    LayeredRadiance* sums = nullptr;
+    std::array<std::uint32_t, RayColumns::kSize> number{};  ///< by ray
+
+    LayeredRadiance& operator[](std::size_t ray) const { return sums[number[ray]]; }
+};
+
 /// Rays from the camera and room for vectors of floats.
 struct FastBlock {
     static constexpr std::size_t kRays = RayColumns::kSize, kCells = 1024;

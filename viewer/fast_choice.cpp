@@ -188,7 +188,7 @@ class Chooser {
         const FastRenderer renderer(world_, part, methods);
         std::vector<LayeredRadiance> pixels(directions_.size());
         FastCounts counts;
-        renderer.shade(directions_.data(), directions_.size(), pixels.data(), counts);
+        renderer.shade(directions_.data(), directions_.size(), 1, pixels.data(), counts);
         return pixels;
     }
 

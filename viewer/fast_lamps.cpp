@@ -149,7 +149,7 @@ glm::dvec3 FastLamps::depth(const glm::dvec3& from, const glm::dvec3& direction,
     return depth;
 }
 
-void FastLamps::light_surfaces(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const {
+void FastLamps::light_surfaces(FastBlock& block, const RaySums& out, FastCounts& counts) const {
     if (block.hits.empty()) return;
     std::vector<Arrival> arrivals;
     for (std::size_t lamp = 0; lamp < world_.scene().lights.size(); ++lamp) {
@@ -182,7 +182,7 @@ void FastLamps::light_surfaces(FastBlock& block, LayeredRadiance* out, FastCount
 }
 
 void FastLamps::add_direct(std::size_t lamp, FastBlock& block, std::vector<Arrival>& arrivals,
-                           LayeredRadiance* out, FastCounts& counts) const {
+                           const RaySums& out, FastCounts& counts) const {
     const PointLight& light = world_.scene().lights[lamp];
     std::vector<std::uint32_t> asked;
     block.points.clear();
@@ -214,7 +214,7 @@ void FastLamps::add_direct(std::size_t lamp, FastBlock& block, std::vector<Arriv
 // [Zhou07] sec. 4.1 has it. Diffuse parts go by G_1 about the normal, lobes by G_n about the
 // mirrored view.
 void FastLamps::add_scattered(std::size_t lamp, FastBlock& block,
-                              const std::vector<Arrival>& arrivals, LayeredRadiance* out,
+                              const std::vector<Arrival>& arrivals, const RaySums& out,
                               FastCounts& counts) const {
     const PointLight& light = world_.scene().lights[lamp];
     const SceneMedia& media = world_.media();

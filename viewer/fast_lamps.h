@@ -22,13 +22,13 @@ class FastLamps {
 
     /// Adds lamps on the surfaces that the block's rays end at, to the layers direct and
     /// surface_point of out[i] for ray i, dimmed on the way to the viewer.
-    void light_surfaces(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
+    void light_surfaces(FastBlock& block, const RaySums& out, FastCounts& counts) const;
 
     /// Adds what media send along the rays, to the layers airlight_point and airlight_gaussians.
-    void light_media(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
+    void light_media(FastBlock& block, const RaySums& out, FastCounts& counts) const;
 
     /// Adds what particles send along the rays.
-    void light_particles(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
+    void light_particles(FastBlock& block, const RaySums& out, FastCounts& counts) const;
     /// Radiance of a lamp that the medium of a slab, with what else fills it, sends along a piece
     /// of a ray in it.
     glm::dvec3 light_slab(std::size_t lamp, const RayPiece& piece, FastCounts& counts) const;
@@ -37,15 +37,15 @@ class FastLamps {
     struct Arrival;
     bool sees(std::size_t lamp, const glm::dvec3& point, FastCounts& counts) const;
     void add_direct(std::size_t lamp, FastBlock& block, std::vector<Arrival>& arrivals,
-                    LayeredRadiance* out, FastCounts& counts) const;
+                    const RaySums& out, FastCounts& counts) const;
     void add_scattered(std::size_t lamp, FastBlock& block, const std::vector<Arrival>& arrivals,
-                       LayeredRadiance* out, FastCounts& counts) const;
-    void light_uniform(std::size_t lamp, FastBlock& block, LayeredRadiance* out,
+                       const RaySums& out, FastCounts& counts) const;
+    void light_uniform(std::size_t lamp, FastBlock& block, const RaySums& out,
                        FastCounts& counts) const;
-    void light_fogshop(std::size_t lamp, bool others, FastBlock& block, LayeredRadiance* out,
+    void light_fogshop(std::size_t lamp, bool others, FastBlock& block, const RaySums& out,
                        FastCounts& counts) const;
     void light_varying(std::size_t lamp, bool gaussians, bool others, FastBlock& block,
-                       LayeredRadiance* out, FastCounts& counts) const;
+                       const RaySums& out, FastCounts& counts) const;
     void build_fogshop(FastCounts& counts);
     void find_lit(std::size_t lamp, FastBlock& block) const;
     glm::dvec3 depth(const glm::dvec3& from, const glm::dvec3& direction, double distance) const;

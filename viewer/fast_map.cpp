@@ -196,7 +196,7 @@ glm::dvec3 FastMap::of_lobe(std::size_t lobe, const glm::dvec3& to_map,
     return {first.x, at(double(mean_depth.y)).y, at(double(mean_depth.z)).z};
 }
 
-void FastMap::light_surfaces(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const {
+void FastMap::light_surfaces(FastBlock& block, const RaySums& out, FastCounts& counts) const {
     if (lobes_.empty()) return;
     for (const std::uint32_t i : block.hits) {
         const FastRay& ray = block.rays[i];
@@ -237,7 +237,7 @@ void FastMap::light_surfaces(FastBlock& block, LayeredRadiance* out, FastCounts&
     }
 }
 
-void FastMap::show(FastBlock& block, LayeredRadiance* out) const {
+void FastMap::show(FastBlock& block, const RaySums& out) const {
     if (!world_.sampler()) return;
     for (std::size_t i = 0; i < block.rays.size(); ++i) {
         const FastRay& ray = block.rays[i];

@@ -44,14 +44,14 @@ class FastMap {
     FastMap(const World& world, const Plan& plan, const FastMethods& methods, FastCounts& counts);
 
     /// Adds the map itself where rays end at it, to the layer direct.
-    void show(FastBlock& block, LayeredRadiance* out) const;
+    void show(FastBlock& block, const RaySums& out) const;
     /// Adds what media scatter of it along rays.
-    void light_media(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
+    void light_media(FastBlock& block, const RaySums& out, FastCounts& counts) const;
     /// Radiance of it that the medium of a slab sends along a piece of a ray in it: as if the map's
     /// mean came through six sides.
     glm::dvec3 light_slab(const RayPiece& piece, FastCounts& counts) const;
     /// Adds its light on the surfaces that the rays end at.
-    void light_surfaces(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const;
+    void light_surfaces(FastBlock& block, const RaySums& out, FastCounts& counts) const;
 
   private:
     static constexpr std::size_t kNoLobe = static_cast<std::size_t>(-1);

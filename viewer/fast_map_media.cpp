@@ -164,7 +164,7 @@ glm::dvec3 FastMap::along(const FastRay& ray, const glm::dvec3& origin) const {
     return sum;
 }
 
-void FastMap::light_media(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const {
+void FastMap::light_media(FastBlock& block, const RaySums& out, FastCounts& counts) const {
     if (source_.empty() && paths_.empty()) return;
     for (std::size_t i = 0; i < block.rays.size(); ++i) {
         const FastRay& ray = block.rays[i];

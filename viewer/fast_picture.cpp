@@ -28,7 +28,7 @@ FastPicture render_fast(const World& world, const Plan& plan, const FastMethods&
     const std::size_t images = 1 + (options.layers ? kRadianceLayerCount : 0);
     require_memory(checked_multiply(pixels, 12 * images, "the picture"), max_memory, "the picture",
                    world.scene().path);
-    const glm::dmat3 axes = camera_axes(camera);
+    const PictureRays rays(camera, width, height);
     const FastRenderer renderer(world, plan, methods);
     FastPicture result;
     result.image = Image(width, height, 3);
@@ -52,19 +52,14 @@ FastPicture render_fast(const World& world, const Plan& plan, const FastMethods&
             for (std::size_t k = 0; k < samples; ++k) {
                 SampleStream stream(i, k);
                 const double dx = stream.next(), dy = stream.next();
-                directions.push_back(camera_direction(camera, axes, width, height, x + dx, y + dy));
+                directions.push_back(rays(x + dx, y + dy));
             }
         }
-        std::vector<LayeredRadiance> radiance(directions.size());
-        renderer.shade(directions.data(), directions.size(), radiance.data(), counts);
+        std::vector<LayeredRadiance> sums(end - begin);
+        renderer.shade(directions.data(), end - begin, samples, sums.data(), counts);
         for (std::size_t i = begin; i < end; ++i) {
-            LayeredRadiance mean;
-            for (std::size_t k = 0; k < samples; ++k) {
-                const LayeredRadiance& one = radiance[(i - begin) * samples + k];
-                for (std::size_t l = 0; l < kRadianceLayerCount; ++l) {
-                    mean.layers[l] += one.layers[l] / double(samples);
-                }
-            }
+            LayeredRadiance& mean = sums[i - begin];
+            for (glm::dvec3& layer : mean.layers) layer /= double(samples);
             set(result.image, i, mean.total());
             for (std::size_t l = 0; options.layers && l < kRadianceLayerCount; ++l) {
                 set(result.layers[l], i, mean.layers[l]);

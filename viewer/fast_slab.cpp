@@ -120,7 +120,7 @@ glm::dvec3 FastMap::light_slab(const RayPiece& piece, FastCounts& counts) const 
 }
 
 // The particle of a cell stands for all of the ray in it, as in viewer/reference_shafts.cpp.
-void FastLamps::light_particles(FastBlock& block, LayeredRadiance* out, FastCounts& counts) const {
+void FastLamps::light_particles(FastBlock& block, const RaySums& out, FastCounts& counts) const {
     const bool runs = plan_.runs(Effect::particles) && !world_.media().empty();
     const ParticleIrradianceTable* const irradiance = runs ? world_.particle_irradiance() : nullptr;
     if (!irradiance) return;

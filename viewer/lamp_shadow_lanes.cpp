@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "viewer/lamp_shadow_map.h"
+#include "viewer/ray_nodes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace airlight {
@@ -144,7 +145,8 @@ class LitFinder {
         const Vec3 foot{hn::MulSub(along, direction.x, to_lamp.x),
                         hn::MulSub(along, direction.y, to_lamp.y),
                         hn::MulSub(along, direction.z, to_lamp.z)};
-        const Vec least = hn::Mul(hn::Set(d, 1e-7f), hn::Add(hn::Set(d, 1.0f), hn::Abs(along)));
+        const Vec least = hn::Mul(hn::Set(d, static_cast<float>(kLeastHeight)),
+                                  hn::Add(hn::Set(d, 1.0f), hn::Abs(along)));
         const Vec height = hn::Max(hn::Sqrt(dot(foot, foot)), least);
         return {foot,
                 {hn::Mul(height, direction.x), hn::Mul(height, direction.y),

@@ -86,8 +86,8 @@ void mixed_nodes(const glm::dvec3& lamp, const glm::dvec3& origin, const glm::dv
     };
     const double foot = glm::dot(lamp - origin, direction);
     Angle angles[2] = {
-        {foot,
-         std::max(glm::length(lamp - origin - foot * direction), 1e-9 * (1 + std::abs(foot)))},
+        {foot, std::max(glm::length(lamp - origin - foot * direction),
+                        kLeastHeight * (1 + std::abs(foot)))},
         {0.5 * (dense.near + dense.far), std::max(0.5 * (dense.far - dense.near), 1e-9)}};
     for (Angle& angle : angles) {
         angle.first = std::atan((part.near - angle.middle) / angle.width);

@@ -11,6 +11,11 @@
 
 namespace airlight {
 
+/// The light of a lamp on a ray through it diverges: rays are kept off, by this times 1 + |the
+/// distance to their point nearest to it|, so far that angles still tell places apart, to 1e-9 of
+/// the distance.
+inline constexpr double kLeastHeight = 1e-7;
+
 /// The part of a ray in which media scatter: all of it if one of them is the same everywhere; else
 /// from where the first begins, or thins out to an optical depth of 1e-8 beyond, to where the last
 /// ends. Nothing where no medium is met.

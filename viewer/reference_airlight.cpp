@@ -6,6 +6,7 @@
 
 #include "medium/phase_airlight.h"
 #include "viewer/line_quadrature.h"
+#include "viewer/ray_nodes.h"
 #include "viewer/reference.h"
 
 namespace airlight {
@@ -61,9 +62,7 @@ glm::dvec3 ReferenceRenderer::airlight_of(std::size_t lamp, Scatterers which,
     const bool by_parts = options_.airlight == RayAirlight::parts;
     const double foot = glm::dot(light.position - origin, direction);
     const glm::dvec3 across = light.position - origin - foot * direction;
-    // A ray through the light diverges there; it is kept off, so far that angles still tell places
-    // apart: to 1e-9 of the distance.
-    const double height = std::max(glm::length(across), 1e-7 * (1 + std::abs(foot)));
+    const double height = std::max(glm::length(across), kLeastHeight * (1 + std::abs(foot)));
     std::vector<RayInterval> lit = {{0, distance}};
     const bool shaded = options_.shadows_in_media && plan_.lights[lamp].shafts;
     if (by_parts && shaded && world_.shadows()) {

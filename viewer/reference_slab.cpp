@@ -6,6 +6,7 @@
 
 #include "viewer/environment_sampler.h"
 #include "viewer/line_quadrature.h"
+#include "viewer/ray_nodes.h"
 #include "viewer/reference.h"
 
 namespace airlight {
@@ -59,7 +60,7 @@ glm::dvec3 ReferenceRenderer::airlight_in_slab(const PointLight& light, const Ra
     const double foot = glm::dot(light.position - piece.origin, piece.direction);
     const double height =
         std::max(glm::length(light.position - piece.origin - foot * piece.direction),
-                 1e-7 * (1 + std::abs(foot)));
+                 kLeastHeight * (1 + std::abs(foot)));
     std::vector<double> breaks =
         world_.media().marks(piece.origin, piece.direction, piece.distance);
     const double free_path = 1 / largest(slab.extinction);

@@ -260,6 +260,9 @@ glm::dvec3 SceneMedia::density(const glm::dvec3& x) const {
 
 glm::dvec3 SceneMedia::depth(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
                              MediumExtent extent) const {
+    if (everywhere_ && extent != MediumExtent::limited && std::isfinite(distance)) {
+        return *everywhere_ * distance;
+    }
     glm::dvec3 sum(0);
     for (const MediumPart& part : parts_) {
         if (part.is_of(extent)) sum += part.depth(origin, direction, distance);
