@@ -9,11 +9,10 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
-#include "bench/ball.h"
+#include "bench/balls_on_floor.h"
 #include "bench/rounds.h"
 #include "core/threads.h"
 #include "viewer/camera.h"
@@ -27,33 +26,6 @@ struct Contender {
     const char* name;
     ReferenceOptions options;
 };
-
-SceneMedium fog(double density) {
-    SceneMedium medium;
-    medium.kind = SceneUniform{glm::dvec3(density), glm::dvec3(0)};
-    return medium;
-}
-
-// A lamp over balls on a floor.
-Scene courtyard(const std::string& directory, int rings) {
-    Scene scene;
-    scene.camera.position = {0, 2, 8};
-    scene.lights = {{{1.5, 2.5, 0.5}, glm::dvec3(10)}};
-    std::ofstream(directory + "/floor.obj")
-        << "v -20 0 -20\nv -20 0 20\nv 20 0 20\nv 20 0 -20\nf 1 2 3\nf 1 3 4\n";
-    SceneObject floor;
-    floor.mesh.path = floor.mesh.name = directory + "/floor.obj";
-    scene.objects.push_back(floor);
-    SceneObject ball;
-    ball.mesh.path = ball.mesh.name = directory + "/ball" + std::to_string(rings) + ".obj";
-    write_ball(ball.mesh.path, rings);
-    for (const double x : {-2.0, 0.0, 2.0}) {
-        ball.transform = glm::dmat4(0.8);
-        ball.transform[3] = {x, 0.8, -std::abs(x), 1};
-        scene.objects.push_back(ball);
-    }
-    return scene;
-}
 
 struct Rays {
     std::vector<glm::dvec3> directions;
@@ -174,7 +146,7 @@ int main(int argc, char** argv) {
     scene.media = {fog(0.05)};
     compare("fog alone", scene, rounds);
     trace_paths("fog alone", scene, rounds);
-    scene = courtyard(directory, 8);
+    scene = balls_on_floor(directory, 8);
     compare("3 balls, no fog", scene, rounds);
     scene.media = {fog(0.05)};
     compare("fog, 3 balls of 224", scene, rounds);
@@ -193,7 +165,7 @@ int main(int argc, char** argv) {
     scene.media.push_back(steam);
     compare("fog and a Gaussian", scene, rounds);
     trace_paths("fog and a Gaussian", scene, rounds);
-    scene = courtyard(directory, 128);
+    scene = balls_on_floor(directory, 128);
     scene.media = {fog(0.05)};
     compare("fog, 3 balls of 65024", scene, rounds);
     std::filesystem::remove_all(directory);

@@ -38,6 +38,7 @@ struct CubicWeights {
     }
 };
 
+template <bool kByChord>
 struct SurfaceKernel {
     static constexpr std::size_t kInputs = 2;
     const float* values;
@@ -46,16 +47,24 @@ struct SurfaceKernel {
 
     // What the table does not hold: nothing is left of e^-T there, or it is outside the domain.
     float operator()(const float (&x)[2]) const {
-        const bool inside = x[0] > kThickest && !std::isnan(detail::checked_angle(x[1]));
+        const bool angle =
+            kByChord ? x[1] >= 0 && x[1] <= 1 : !std::isnan(detail::checked_angle(x[1]));
+        const bool inside = x[0] > kThickest && angle;
         return inside ? 0 : std::numeric_limits<float>::quiet_NaN();
     }
 
     HWY_INLINE Vec operator()(Tag d, const Vec (&x)[2], Mask* served) const {
         const hn::RebindToSigned<Tag> di;
-        const Vec t = x[0], theta = x[1];
-        *served = hn::And(within(t, 0, kThickest),
-                          within(theta, 0, static_cast<float>(detail::kPiOfFloat)));
         const Vec one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+        const Vec t = x[0];
+        Vec theta = x[1];
+        float largest = static_cast<float>(detail::kPiOfFloat);
+        if (kByChord) largest = 1;
+        *served = hn::And(within(t, 0, kThickest), within(x[1], 0, largest));
+        if (kByChord) {
+            const Vec asin = hn::Asin(d, hn::Sqrt(hn::Min(theta, one)));
+            theta = hn::Min(hn::Add(asin, asin), hn::Set(d, static_cast<float>(kPi)));
+        }
         const Vec u = hn::Mul(hn::Sqrt(hn::Sqrt(hn::Mul(t, hn::Set(d, 1 / kThickest)))),
                               hn::Set(d, static_cast<float>(columns - 1)));
         const float last = static_cast<float>(rows - 1);
@@ -99,7 +108,12 @@ struct SurfaceKernel {
 
 HWY_ATTR void run_surface(const float* values, int columns, int rows, bool narrow,
                           std::size_t count, const float* t, const float* theta, float* out) {
-    batch(count, {t, theta}, out, SurfaceKernel{values, columns, rows, narrow});
+    batch(count, {t, theta}, out, SurfaceKernel<false>{values, columns, rows, narrow});
+}
+
+HWY_ATTR void run_surface_by_chord(const float* values, int columns, int rows, bool narrow,
+                                   std::size_t count, const float* t, const float* q, float* out) {
+    batch(count, {t, q}, out, SurfaceKernel<true>{values, columns, rows, narrow});
 }
 
 }  // namespace HWY_NAMESPACE
@@ -110,6 +124,7 @@ HWY_AFTER_NAMESPACE();
 namespace airlight {
 
 HWY_EXPORT(run_surface);
+HWY_EXPORT(run_surface_by_chord);
 
 SurfaceBatchTable::SurfaceBatchTable(double exponent, int size) : exponent_(exponent) {
     const WarpedSurfaceTable table(exponent, size, SurfaceInterpolation::cubic);
@@ -123,6 +138,13 @@ void SurfaceBatchTable::surface_batch(std::size_t count, const float* t_sp, cons
     HWY_DYNAMIC_DISPATCH(run_surface)
     (values_.data(), columns_, rows_, exponent_ >= WarpedSurfaceTable::kFirstNarrow, count, t_sp,
      theta_s, out);
+}
+
+void SurfaceBatchTable::surface_batch_by_chord(std::size_t count, const float* t_sp, const float* q,
+                                               float* out) const {
+    HWY_DYNAMIC_DISPATCH(run_surface_by_chord)
+    (values_.data(), columns_, rows_, exponent_ >= WarpedSurfaceTable::kFirstNarrow, count, t_sp, q,
+     out);
 }
 
 }  // namespace airlight

@@ -25,6 +25,11 @@ class SurfaceBatchTable {
     void surface_batch(std::size_t count, const float* t_sp, const float* theta_s,
                        float* out) const;
 
+    /// The same at theta_s = 2 asin(sqrt(q[i])), q in [0, 1]: a quarter of the square of the
+    /// difference of the two unit vectors that theta_s lies between. No angle need be computed.
+    void surface_batch_by_chord(std::size_t count, const float* t_sp, const float* q,
+                                float* out) const;
+
     double exponent() const { return exponent_; }
 
   private:

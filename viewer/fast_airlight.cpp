@@ -60,12 +60,12 @@ void FastLamps::find_lit(std::size_t lamp, FastBlock& block) const {
     for (std::uint32_t i = 0; i < block.rays.size(); ++i) {
         const FastRay& ray = block.rays[i];
         if (ray.bent) continue;
-        if (shaded) {
-            world_.shadows()->lit(world_.scene().lights[lamp].position, block.origin, ray.direction,
-                                  ray.distance, parts);
-        } else {
-            parts.assign(1, {0, ray.distance});
+        if (!shaded) {
+            block.lit.push_back({i, 0, ray.distance});
+            continue;
         }
+        world_.shadows()->lit(world_.scene().lights[lamp].position, block.origin, ray.direction,
+                              ray.distance, parts);
         for (const RayInterval& part : parts) block.lit.push_back({i, part.begin, part.end});
     }
 }

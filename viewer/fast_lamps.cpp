@@ -220,12 +220,16 @@ void FastLamps::add_scattered(std::size_t lamp, FastBlock& block,
     const SceneMedia& media = world_.media();
     std::vector<std::uint32_t> chosen;
     std::vector<glm::dvec3> factors;  // reflectance * sigma_s
-    auto& [thickness, angle, value, spare, unused] = block.columns;
+    auto& [thickness, chord, value, spare, unused] = block.columns;
+    glm::dvec3 everywhere(0);
+    for (const MediumPart& part : media.parts()) {
+        if (part.everywhere()) everywhere += part.albedo() * *part.everywhere();
+    }
     for (std::size_t lobe = 0; lobe < lobes_.size(); ++lobe) {
         const double n = lobes_[lobe]->exponent();
         chosen.clear();
         factors.clear();
-        angle.clear();
+        chord.clear();
         for (std::uint32_t k = 0; k < arrivals.size(); ++k) {
             const Arrival& arrival = arrivals[k];
             const FastRay& ray = block.rays[arrival.ray];
@@ -237,24 +241,18 @@ void FastLamps::add_scattered(std::size_t lamp, FastBlock& block,
                 axis = ray.direction - 2 * glm::dot(ray.hit.normal, ray.direction) * ray.hit.normal;
             }
             if (!(largest(reflectance) > 0)) continue;
-            glm::dvec3 scattering(0);
-            if (media.everywhere()) {
-                for (const MediumPart& part : media.parts()) {
-                    scattering += part.albedo() * *part.everywhere();
-                }
-            } else {
-                for (const MediumPart& part : media.parts()) {
-                    scattering += part.albedo() *
-                                  part.depth(ray.hit.position, arrival.to_light, arrival.distance) /
-                                  arrival.distance;
-                }
-                // Nothing comes through endless depths.
-                scattering = glm::min(scattering, kDensest);
+            glm::dvec3 scattering = everywhere;
+            for (const MediumPart& part : media.parts()) {
+                if (part.everywhere()) continue;
+                scattering += part.albedo() *
+                              part.depth(ray.hit.position, arrival.to_light, arrival.distance) /
+                              arrival.distance;
             }
-            const float cosine = static_cast<float>(glm::dot(axis, arrival.to_light));
-            const float sine = static_cast<float>(glm::length(glm::cross(axis, arrival.to_light)));
+            // Nothing comes through endless depths.
+            if (!media.everywhere()) scattering = glm::min(scattering, kDensest);
+            const glm::dvec3 between = axis - arrival.to_light;
             chosen.push_back(k);
-            angle.push_back(std::atan2(sine, cosine));
+            chord.push_back(std::min(1.0f, static_cast<float>(0.25 * glm::dot(between, between))));
             factors.push_back(reflectance * scattering / (2 * kPi * arrival.distance) *
                               light.intensity * ray.transmittance);
         }
@@ -269,8 +267,8 @@ void FastLamps::add_scattered(std::size_t lamp, FastBlock& block,
                 grey = grey && depth.x == depth.y && depth.x == depth.z;
                 thickness[k] = static_cast<float>(depth[c]);
             }
-            lobes_[lobe]->surface_batch(chosen.size(), thickness.data(), angle.data(),
-                                        value.data());
+            lobes_[lobe]->surface_batch_by_chord(chosen.size(), thickness.data(), chord.data(),
+                                                 value.data());
             for (std::size_t k = 0; k < chosen.size(); ++k) {
                 glm::dvec3& sum = out[arrivals[chosen[k]].ray][RadianceLayer::surface_point];
                 if (grey) {

@@ -36,7 +36,7 @@ FastPicture render_fast(const World& world, const Plan& plan, const FastMethods&
 
     // Rays of a pixel follow each other, and those of its neighbours come next.
     const auto samples = static_cast<std::size_t>(options.samples);
-    const std::size_t grain = std::max<std::size_t>(1, 4 * FastBlock::kRays / samples);
+    const std::size_t grain = std::max<std::size_t>(1, 16 * FastBlock::kRays / samples);
     const auto set = [](Image& image, std::size_t i, const glm::dvec3& value) {
         for (int c = 0; c < 3; ++c) {
             image.pixels[3 * i + static_cast<std::size_t>(c)] = static_cast<float>(value[c]);
