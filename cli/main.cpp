@@ -100,6 +100,8 @@ int run(int argc, char** argv) {
         "  airlight info foggy.exr\n"
         "  airlight sheet room.exr foggy.exr -o sheet.png\n"
         "  airlight eval psf < points.csv\n"
+        "  airlight plan courtyard.json\n"
+        "  airlight render courtyard.json -o courtyard.png\n"
         "airlight COMMAND --help tells more. Exit status: 0 done, 1 the data or the machine\n"
         "failed, 2 wrong usage; 128 and the signal's number: interrupted.");
     const std::vector<Command> commands = {

@@ -6,18 +6,39 @@
 #include <filesystem>
 
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "envmap/io.h"
 #include "envmap/sheet.h"
 
 namespace airlight {
 
-bool is_png(const std::string& path) {
+namespace {
+
+std::string extension_of(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension == ".png";
+    return extension;
+}
+
+}  // namespace
+
+bool is_png(const std::string& path) {
+    return extension_of(path) == ".png";
+}
+
+void check_picture_name(const std::string& path) {
+    const std::string extension = extension_of(path), known = std::string(writable_formats());
+    if (path == "-" || extension == ".png") return;
+    if (!extension.empty() && (known + ",").find(extension + ",") != std::string::npos) return;
+    throw Error(
+        ErrorCode::usage,
+        (extension.empty() ? "has no extension" : "has the unknown extension " + extension) +
+            "; pictures are written as " + known + ", .png",
+        path);
 }
 
 void check_picture_target(const std::string& path, bool force) {
+    check_picture_name(path);
     if (is_png(path)) {
         check_target(path, force);
         return;

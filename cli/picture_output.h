@@ -10,6 +10,10 @@ namespace airlight {
 
 bool is_png(const std::string& path);
 
+/// Throws Error(usage), naming the path, unless it ends in an extension that pictures have. "-" is
+/// standard output.
+void check_picture_name(const std::string& path);
+
 /// Throws what writing there would, before there is anything to write.
 void check_picture_target(const std::string& path, bool force);
 

@@ -26,6 +26,7 @@ void run_plan(const PlanRequest& request, const CommonOptions& common) {
     reading.max_memory = common.max_memory;
     const World world(read_scene(input, common.max_memory), reading);
     const Plan plan = make_plan(world, request.options);
+    warn_of_tolerance(input, plan);
     if (!common.json) {
         print(to_lines(input, plan));
         return;
@@ -52,9 +53,7 @@ Command declare_plan(CLI::App& program) {
     add_plan_flags(command, request->options);
     add_flag(command, "--tolerance", "E",
              "Error of a pixel, relative to the brightest (default: the scene's)",
-             [=](const std::string& text) {
-                 request->options.tolerance = parse_number(text, "--tolerance", {1e-9, 1});
-             });
+             [=](const std::string& text) { request->options.tolerance = parse_tolerance(text); });
     add_flag(command, "--size", "WxH", "Pixels of the picture (default: the camera's)",
              [=](const std::string& text) {
                  parse_picture_size(text, request->options.width, request->options.height);

@@ -2,6 +2,7 @@
 #include "cli/plan_flags.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <cstdio>
 
@@ -47,6 +48,18 @@ const char* product_name(SurfaceProduct product) {
 }
 
 }  // namespace
+
+double parse_tolerance(const std::string& text) {
+    return parse_number(text, "--tolerance", {1e-12, 1});
+}
+
+void warn_of_tolerance(const std::string& path, const Plan& plan) {
+    if (plan.tolerance >= kFinestQuadrature || plan.bound() <= plan.tolerance) return;
+    spdlog::warn(
+        "{}: no method reaches the tolerance {:.3g}; errors stay below {:.2g} of the brightest "
+        "pixel",
+        path, plan.tolerance, plan.bound());
+}
 
 void add_plan_flags(const Command& command, PlanOptions& options) {
     add_flag(

@@ -136,7 +136,10 @@ void run_render(const RenderRequest& request, const CommonOptions& common) {
     planning.width = width;
     planning.height = height;
     const Plan plan = make_plan(world, planning);
-    if (!multiple) world.set_media(plan.media);
+    if (!multiple) {
+        world.set_media(plan.media);
+        warn_of_tolerance(input, plan);
+    }
     if (plan.engine == Engine::fast) {
         run_fast(request, world, plan, read_seconds, common);
         return;
@@ -242,9 +245,7 @@ Command declare_render(CLI::App& program) {
         "samples), or the picture, with multiple scattering; with --engine fast and --compare, "
         "the error that the plan aims at; integrals along rays are made to a tenth of it or of "
         "the scene's",
-        [=](const std::string& text) {
-            request->options.tolerance = parse_number(text, "--tolerance", {1e-9, 1});
-        });
+        [=](const std::string& text) { request->options.tolerance = parse_tolerance(text); });
     add_flag(command, "--exposure", "EV", "Stops brighter than automatic, for .png (default: 0)",
              [=](const std::string& text) {
                  request->exposure = parse_number(text, "--exposure", {-30, 30});

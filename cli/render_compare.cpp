@@ -12,6 +12,7 @@
 #include "cli/picture_output.h"
 #include "cli/plan_flags.h"
 #include "cli/stopwatch.h"
+#include "core/error.h"
 #include "core/memory.h"
 #include "core/progress.h"
 #include "envmap/sheet.h"
@@ -46,6 +47,9 @@ std::string name_beside(const std::string& output, const std::string& what,
 }
 
 void render_and_compare(const CompareRequest& request, const CommonOptions& common) {
+    check_picture_name(request.output);
+    if (request.output == "-")
+        throw Error(ErrorCode::usage, "writes files; give -o a name", "--compare");
     const std::string reference_path = name_beside(request.output, "reference");
     const std::string fast_path = name_beside(request.output, "fast");
     const std::string difference_path = name_beside(request.output, "difference", ".png");
@@ -87,6 +91,7 @@ void render_and_compare(const CompareRequest& request, const CommonOptions& comm
     const Plan plan = make_plan(world, planning);
     world.set_media(plan.media);
     const double plan_seconds = seconds_since(start);
+    warn_of_tolerance(request.input, plan);
     FastPictureOptions fast;
     fast.samples = options.samples;
     fast.width = options.width;

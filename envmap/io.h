@@ -30,6 +30,7 @@ struct ReadOptions {
     NonfinitePolicy nonfinite = NonfinitePolicy::refuse;
     NegativePolicy negative = NegativePolicy::keep;
     bool allow_any_aspect = false;  ///< `--layout latlong`: take any shape for a lat-long map
+    bool offer_any_aspect = true;   ///< the message that refuses another shape names that flag
 };
 
 /// What a reader saw and did on the way, for the log and for `--json`.

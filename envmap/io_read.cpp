@@ -33,11 +33,11 @@ void check_shape(int width, int height, const ReadOptions& options, const std::s
     if (options.allow_any_aspect || static_cast<std::int64_t>(width) == 2 * std::int64_t{height}) {
         return;
     }
-    throw Error(ErrorCode::data,
-                fmt::format("is {} × {} pixels, but a lat-long map is twice as wide as high "
-                            "(--layout latlong takes any shape)",
-                            width, height),
-                name);
+    throw Error(
+        ErrorCode::data,
+        fmt::format("is {} × {} pixels, but a lat-long map is twice as wide as high{}", width,
+                    height, options.offer_any_aspect ? " (--layout latlong takes any shape)" : ""),
+        name);
 }
 
 /// Finds and treats the values that the policies are about, block by block from the top.

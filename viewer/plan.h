@@ -92,6 +92,10 @@ struct PlanOptions {
     int width = 0, height = 0;  ///< of the picture; 0: the camera's
 };
 
+/// The finest error of an integral that is asked for, relative to it: coarser ones stand for it
+/// where a tolerance is finer.
+inline constexpr double kFinestQuadrature = 1e-6;
+
 /// The plan for a picture of the world's scene. Deterministic.
 Plan make_plan(const World& world, const PlanOptions& options = {});
 

@@ -8,7 +8,6 @@
 namespace airlight::detail {
 namespace {
 
-constexpr double kFinest = 1e-6;
 constexpr double kClosedFormError = 1e-12;  // ten times that of medium/airlight.h
 
 void name_integral(const Plan& plan, EffectChoice& c, bool closed, std::size_t lamps) {
@@ -72,9 +71,9 @@ void name_reference_methods(Plan& plan) {
     const double integrals = double(lamps_with(plan, &LampPlan::airlight_point) +
                                     lamps_with(plan, &LampPlan::airlight_gaussians) +
                                     lamps_with(plan, &LampPlan::surface));
-    plan.quadrature = plan.everything
-                          ? kFinest
-                          : std::max(kFinest, 0.4 * plan.tolerance / std::max(1.0, integrals));
+    plan.quadrature = plan.everything ? kFinestQuadrature
+                                      : std::max(kFinestQuadrature,
+                                                 0.4 * plan.tolerance / std::max(1.0, integrals));
     const bool closed =
         !plan.everything && SceneMedia(plan.media).everywhere() && !plan.runs(Effect::slab);
     for (std::size_t i = 0; i < kEffectCount; ++i) {

@@ -93,6 +93,7 @@ World::World(const Scene& scene, const WorldOptions& options)
         ReadOptions map;
         map.max_memory = options.max_memory;
         map.negative = NegativePolicy::clamp;
+        map.offer_any_aspect = false;
         sampler_ = std::make_unique<EnvironmentSampler>(
             read_image(scene.environment->file.path, map), scene.environment->rotation,
             scene.environment->scale);

@@ -108,6 +108,27 @@ TEST(PlanCommand, SaysWhyInWordsAndInJson) {
     EXPECT_EQ(run({"plan", scene, "--tolerance", "0"}).status, 2);
 }
 
+TEST(PlanCommand, TolerancesBeyondAllMethodsAreWarnedOf) {
+    const ScratchDirectory directory;
+    const std::string scene = write_scene(directory, R"({"airlight_scene": 1,
+        "lights": [{"type": "point", "position": [0, 1, 0], "intensity": 10}], "media": [
+        {"type": "height", "profile": "exponential", "density": 0.1, "scale_height": 2}]})");
+    for (const std::string engine : {"reference", "fast"}) {
+        const std::vector<std::string> plan = {"plan", scene, "--engine", engine, "--tolerance"};
+        const auto with = [&](const std::string& tolerance) {
+            std::vector<std::string> words = plan;
+            words.push_back(tolerance);
+            return run(words);
+        };
+        EXPECT_EQ(with("1e-4").err, "");
+        const std::string err = with("1e-12").err;
+        EXPECT_NE(err.find("no method reaches the tolerance 1e-12; errors stay below "),
+                  std::string::npos)
+            << err;
+        EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 1) << err;
+    }
+}
+
 TEST(RenderCommand, EqualRunsGiveEqualBytes) {
     const ScratchDirectory directory;
     const std::string scene = write_scene(directory, kLamp);
@@ -179,7 +200,22 @@ TEST(RenderCommand, RefusesInOneSentence) {
     expect_failure({"render", scene, "-o", out, "--samples", "0"}, 2, "--samples");
     expect_failure({"render", scene, "-o", out, "--tolerance", "0"}, 2, "--tolerance");
     expect_failure({"render", scene, "-o", out, "--engine", "gl"}, 2, "--engine: 'gl'");
-    expect_failure({"render", scene, "-o", directory / "a.txt"}, 2, "a.txt");
+    const std::string formats = "; pictures are written as .exr, .hdr, .pfm, .tif, .tiff, .png\n";
+    for (const bool compare : {false, true}) {
+        const auto refuse = [&](const std::string& name, const std::string& message) {
+            std::vector<std::string> words = {"render", scene, "-o", name};
+            if (compare) words.push_back("--compare");
+            expect_failure(words, 2, message);
+        };
+        refuse(directory / "a.txt", "/a.txt: has the unknown extension .txt" + formats);
+        refuse(directory / "a", "/a: has no extension" + formats);
+    }
+    expect_failure({"render", scene, "-o", "-", "--compare"}, 2, "--compare: writes files");
+    write_image(directory / "high.exr", Image(1, 2, 3));
+    write_bytes(scene, R"({"airlight_scene": 1, "environment": {"file": "high.exr"}})");
+    expect_failure({"render", scene, "-o", out}, 1,
+                   "high.exr: is 1 × 2 pixels, but a lat-long map is twice as wide as high\n");
+    write_bytes(scene, kLamp);
     expect_failure({"render", directory / "none.json", "-o", out}, 1, "none.json: does not exist");
     expect_failure({"render", scene, "-o", out, "--max-memory", "1K"}, 1, "--max-memory");
     expect_failure({"render", scene, "-o", out, "--scattering", "twice"}, 2,
