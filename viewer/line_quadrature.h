@@ -22,13 +22,16 @@ struct LineQuadratureOptions {
     int most_panels = 200;  ///< it ends there, and `error` says how far it came
 };
 
+inline constexpr std::size_t kPanelPoints = 15;
+
 struct LinePanel {
     double begin = 0, end = 0;
 };
 
-/// int f over panels, f: double -> glm::dvec3. Gauss-Kronrod rules of 7 and 15 nodes; the panel
-/// with the largest error is halved until the sum of all is within the larger of the two
-/// tolerances. f is not evaluated at the ends of panels, so it may jump there.
+/// int f over panels; f(count, x, values) sets values[i] = f(x[i]), kPanelPoints at a time.
+/// Gauss-Kronrod rules of 7 and 15 nodes; the panel with the largest error is halved until the sum
+/// of all is within the larger of the two tolerances. f is not evaluated at the ends of panels, so
+/// it may jump there.
 template <class F>
 LineIntegral integrate_panels(const F& f, const std::vector<LinePanel>& parts,
                               const LineQuadratureOptions& options = {}) {
@@ -48,22 +51,25 @@ LineIntegral integrate_panels(const F& f, const std::vector<LinePanel>& parts,
         const auto& weights = Kronrod::weights();
         const auto& coarse_weights = Gauss::weights();
         const double middle = 0.5 * (a + b), half = 0.5 * (b - a);
-        glm::dvec3 values[15];
-        values[0] = f(middle);
+        double places[kPanelPoints] = {middle};
+        for (std::size_t i = 1; i < nodes.size(); ++i) {
+            places[2 * i - 1] = middle - half * nodes[i];
+            places[2 * i] = middle + half * nodes[i];
+        }
+        glm::dvec3 values[kPanelPoints];
+        f(kPanelPoints, places, values);
         glm::dvec3 fine = weights[0] * values[0], coarse = coarse_weights[0] * values[0];
         for (std::size_t i = 1; i < nodes.size(); ++i) {
-            values[2 * i - 1] = f(middle - half * nodes[i]);
-            values[2 * i] = f(middle + half * nodes[i]);
             const glm::dvec3 pair = values[2 * i - 1] + values[2 * i];
             fine += weights[i] * pair;
             if (i % 2 == 0) coarse += coarse_weights[i / 2] * pair;
         }
-        result.evaluations += 15;
+        result.evaluations += kPanelPoints;
         // The difference is the error of the coarse rule. That of the fine one follows from how
-        // small it is beside the spread of f, as QUADPACK has it, whose estimate comes out up to ten
-        // times too small along rays that go far from a lamp.
+        // small it is beside the spread of f, as QUADPACK has it, whose estimate comes out up to
+        // ten times too small along rays that go far from a lamp.
         double spread = 0;
-        for (std::size_t i = 0; i < 15; ++i) {
+        for (std::size_t i = 0; i < kPanelPoints; ++i) {
             spread += weights[(i + 1) / 2] * largest(values[i] - 0.5 * fine);
         }
         const double difference = largest(fine - coarse);
@@ -102,13 +108,16 @@ LineIntegral integrate_panels(const F& f, const std::vector<LinePanel>& parts,
     return result;
 }
 
-/// The same over the panels between ascending `breaks`.
+/// The same over the panels between ascending `breaks`, f: double -> glm::dvec3.
 template <class F>
 LineIntegral integrate_line(const F& f, const std::vector<double>& breaks,
                             const LineQuadratureOptions& options = {}) {
     std::vector<LinePanel> panels;
     for (std::size_t i = 1; i < breaks.size(); ++i) panels.push_back({breaks[i - 1], breaks[i]});
-    return integrate_panels(f, panels, options);
+    const auto each = [&](std::size_t count, const double* x, glm::dvec3* values) {
+        for (std::size_t i = 0; i < count; ++i) values[i] = f(x[i]);
+    };
+    return integrate_panels(each, panels, options);
 }
 
 }  // namespace airlight

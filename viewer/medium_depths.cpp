@@ -12,6 +12,9 @@
 namespace airlight {
 namespace {
 
+constexpr std::size_t kRays = 32;   // at a time
+constexpr double kFarFromBlob = 8;  // in units of its 1 / scale
+
 // Nothing times an endless depth is nothing.
 void add(const glm::dvec3& colour, float depth, glm::dvec3& sum) {
     for (int c = 0; c < 3; ++c) {
@@ -43,7 +46,7 @@ MediumDepths::MediumDepths(const SceneMedia& media, MediumExtent extent) {
 
 void MediumDepths::operator()(std::size_t count, const glm::dvec3* origins,
                               const glm::dvec3* directions, const double* distances,
-                              glm::dvec3* out) {
+                              glm::dvec3* out) const {
     for (std::size_t i = 0; i < count; ++i) {
         out[i] = glm::dvec3(0);
         for (int c = 0; c < 3; ++c) {
@@ -54,63 +57,96 @@ void MediumDepths::operator()(std::size_t count, const glm::dvec3* origins,
         }
     }
     if (!blobs_.empty()) add_blobs(count, origins, directions, distances, out);
-    if (layers_.empty() && atmospheres_.empty()) return;
-    auto& [a, b, c, d, result] = columns_;
-    for (std::vector<float>& column : columns_) column.resize(std::max(column.size(), count));
-    for (const Layer& layer : layers_) {
-        for (std::size_t i = 0; i < count; ++i) {
-            a[i] = static_cast<float>(origins[i].y);
-            b[i] = static_cast<float>(directions[i].y);
-            c[i] = static_cast<float>(distances[i]);
-            d[i] = static_cast<float>(1 / layer.shape.scale_height);
+    for (std::size_t begin = 0; begin < count; begin += kRays) {
+        const std::size_t some = std::min(kRays, count - begin);
+        for (const Layer& layer : layers_) {
+            add_layer(layer, some, origins + begin, directions + begin, distances + begin,
+                      out + begin);
         }
-        exponential_height_depth_batch(count, a.data(), b.data(), c.data(), d.data(),
-                                       result.data());
-        for (std::size_t i = 0; i < count; ++i) add(layer.colour, result[i], out[i]);
-    }
-    for (const Atmosphere& atmosphere : atmospheres_) {
-        for (std::size_t i = 0; i < count; ++i) {
-            const glm::dvec3 from = origins[i] - atmosphere.shape.center;
-            const double r = glm::length(from);
-            a[i] = static_cast<float>(r - atmosphere.shape.radius);
-            // At the center every direction leads up.
-            const double rise = r > 0 ? glm::dot(from, directions[i]) / r : 1;
-            b[i] = static_cast<float>(std::clamp(rise, -1.0, 1.0));
-            c[i] = static_cast<float>(distances[i]);
+        for (const Atmosphere& atmosphere : atmospheres_) {
+            add_atmosphere(atmosphere, some, origins + begin, directions + begin, distances + begin,
+                           out + begin);
         }
-        spherical_depth_at_altitude_batch(static_cast<float>(atmosphere.shape.radius),
-                                          static_cast<float>(atmosphere.shape.scale_height), count,
-                                          a.data(), b.data(), c.data(), result.data());
-        for (std::size_t i = 0; i < count; ++i) add(atmosphere.colour, result[i], out[i]);
     }
 }
 
-void MediumDepths::add_blobs(std::size_t count, const glm::dvec3* origins,
+void MediumDepths::add_layer(const Layer& layer, std::size_t count, const glm::dvec3* origins,
                              const glm::dvec3* directions, const double* distances,
                              glm::dvec3* out) {
-    const std::size_t all = blobs_.size() * count;
-    auto& [scale, amplitude, rho, place, end] = columns_;
-    for (std::vector<float>& column : columns_) column.resize(std::max(column.size(), all));
-    for (std::size_t i = 0, k = 0; i < count; ++i) {
-        const glm::vec3 direction(directions[i]);
-        const float distance = static_cast<float>(distances[i]);
-        for (const GaussianBlob& blob : blobs_) {
-            const glm::vec3 to(blob.center - origins[i]);
-            const float along = glm::dot(to, direction);
-            const glm::vec3 off = to - along * direction;
-            scale[k] = static_cast<float>(blob.scale);
-            amplitude[k] = static_cast<float>(blob.amplitude);
-            rho[k] = std::sqrt(glm::dot(off, off));
-            place[k] = along;
-            end[k++] = distance;
-        }
+    float y[kRays] = {}, up[kRays] = {}, end[kRays] = {}, inverse[kRays] = {}, result[kRays];
+    for (std::size_t i = 0; i < count; ++i) {
+        y[i] = static_cast<float>(origins[i].y);
+        up[i] = static_cast<float>(directions[i].y);
+        end[i] = static_cast<float>(distances[i]);
+        inverse[i] = static_cast<float>(1 / layer.shape.scale_height);
     }
-    gaussian_line_batch(all, scale.data(), amplitude.data(), rho.data(), place.data(), end.data(),
-                        end.data());
-    for (std::size_t i = 0, k = 0; i < count; ++i) {
-        double sum = 0;
-        for (std::size_t n = 0; n < blobs_.size(); ++n) sum += double(end[k++]);
-        out[i] += sum;
+    exponential_height_depth_batch(count, y, up, end, inverse, result);
+    for (std::size_t i = 0; i < count; ++i) add(layer.colour, result[i], out[i]);
+}
+
+// Rays from far above begin where they come below kTop scale heights: from where they do come,
+// single precision does not tell how deep they go.
+void MediumDepths::add_atmosphere(const Atmosphere& atmosphere, std::size_t count,
+                                  const glm::dvec3* origins, const glm::dvec3* directions,
+                                  const double* distances, glm::dvec3* out) {
+    constexpr double kTop = 60;
+    const SphericalExponentialDensity& shape = atmosphere.shape;
+    const double top = shape.radius + kTop * shape.scale_height;
+    float altitude[kRays] = {}, cosine[kRays] = {}, end[kRays] = {}, result[kRays];
+    for (std::size_t i = 0; i < count; ++i) {
+        glm::dvec3 from = origins[i] - shape.center;
+        double r = glm::length(from), distance = distances[i];
+        if (r > top) {
+            const double middle = -glm::dot(from, directions[i]);
+            const glm::dvec3 off = from + middle * directions[i];
+            const double square = (top - glm::length(off)) * (top + glm::length(off));
+            // Those that pass by above get an end before their beginning.
+            const double entry = square > 0 ? middle - std::sqrt(square) : distance;
+            distance = entry > 0 ? std::max(0.0, distance - entry) : 0;
+            if (distance > 0) from += entry * directions[i];
+            r = glm::length(from);
+        }
+        altitude[i] = static_cast<float>(r - shape.radius);
+        // At the center every direction leads up.
+        const double rise = r > 0 ? glm::dot(from, directions[i]) / r : 1;
+        cosine[i] = static_cast<float>(std::clamp(rise, -1.0, 1.0));
+        end[i] = static_cast<float>(distance);
+    }
+    spherical_depth_at_altitude_batch(static_cast<float>(shape.radius),
+                                      static_cast<float>(shape.scale_height), count, altitude,
+                                      cosine, end, result);
+    for (std::size_t i = 0; i < count; ++i) add(atmosphere.colour, result[i], out[i]);
+}
+
+// Rays begin no farther before a Gaussian than where it is e^{-64} of itself, for the same reason.
+void MediumDepths::add_blobs(std::size_t count, const glm::dvec3* origins,
+                             const glm::dvec3* directions, const double* distances,
+                             glm::dvec3* out) const {
+    float scale[kMostBlobs], amplitude[kMostBlobs], rho[kMostBlobs], place[kMostBlobs],
+        end[kMostBlobs];
+    const std::size_t rays = kMostBlobs / blobs_.size();
+    for (std::size_t begin = 0; begin < count; begin += rays) {
+        const std::size_t last = std::min(begin + rays, count);
+        std::size_t k = 0;
+        for (std::size_t i = begin; i < last; ++i) {
+            for (const GaussianBlob& blob : blobs_) {
+                const glm::dvec3 to = blob.center - origins[i];
+                const double along = glm::dot(to, directions[i]);
+                const double skipped = std::max(0.0, along - kFarFromBlob / blob.scale);
+                scale[k] = static_cast<float>(blob.scale);
+                amplitude[k] = static_cast<float>(blob.amplitude);
+                rho[k] = static_cast<float>(glm::length(to - along * directions[i]));
+                place[k] = static_cast<float>(along - skipped);
+                end[k++] = static_cast<float>(std::max(0.0, distances[i] - skipped));
+            }
+        }
+        gaussian_line_batch(k, scale, amplitude, rho, place, end, end);
+        k = 0;
+        for (std::size_t i = begin; i < last; ++i) {
+            double sum = 0;
+            for (std::size_t n = 0; n < blobs_.size(); ++n) sum += double(end[k++]);
+            out[i] += sum;
+        }
     }
 }
 

@@ -12,16 +12,18 @@ namespace airlight {
 
 /// SceneMedia::depth() for many rays: Gaussians, layers and atmospheres without borders by
 /// medium/gaussian_line_batch.h, height_density_batch.h and spherical_density_batch.h, relative
-/// 2e-6, other media by their own closed forms. For one thread.
+/// 2e-6, other media by their own closed forms. Of an atmosphere that the ray comes into from far
+/// above it is what lies below 60 scale heights. Any thread may ask.
 class MediumDepths {
   public:
     explicit MediumDepths(const SceneMedia& media, MediumExtent extent = MediumExtent::any);
 
     /// out[i] of `count` rays of unit directions.
     void operator()(std::size_t count, const glm::dvec3* origins, const glm::dvec3* directions,
-                    const double* distances, glm::dvec3* out);
+                    const double* distances, glm::dvec3* out) const;
     /// Of one.
-    glm::dvec3 operator()(const glm::dvec3& origin, const glm::dvec3& direction, double distance) {
+    glm::dvec3 operator()(const glm::dvec3& origin, const glm::dvec3& direction,
+                          double distance) const {
         glm::dvec3 depth(0);
         (*this)(1, &origin, &direction, &distance, &depth);
         return depth;
@@ -32,7 +34,7 @@ class MediumDepths {
     static constexpr std::size_t kMostBlobs = 512;
 
     void add_blobs(std::size_t count, const glm::dvec3* origins, const glm::dvec3* directions,
-                   const double* distances, glm::dvec3* out);
+                   const double* distances, glm::dvec3* out) const;
 
     struct Layer {
         ExponentialHeightDensity shape;
@@ -42,12 +44,16 @@ class MediumDepths {
         SphericalExponentialDensity shape;
         glm::dvec3 colour;
     };
+    static void add_layer(const Layer& layer, std::size_t count, const glm::dvec3* origins,
+                          const glm::dvec3* directions, const double* distances, glm::dvec3* out);
+    static void add_atmosphere(const Atmosphere& atmosphere, std::size_t count,
+                               const glm::dvec3* origins, const glm::dvec3* directions,
+                               const double* distances, glm::dvec3* out);
     glm::dvec3 uniform_{0};
     std::vector<Layer> layers_;
     std::vector<Atmosphere> atmospheres_;
     std::vector<const MediumPart*> parts_;  ///< others
     std::vector<GaussianBlob> blobs_;
-    std::vector<float> columns_[5];
 };
 
 }  // namespace airlight

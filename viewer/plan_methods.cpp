@@ -9,6 +9,8 @@ namespace airlight::detail {
 namespace {
 
 constexpr double kClosedFormError = 1e-12;  // ten times that of medium/airlight.h
+// Of transmittances by viewer/medium_depths.h.
+constexpr double kSinglePrecisionError = 2e-5;
 
 void name_integral(const Plan& plan, EffectChoice& c, bool closed, std::size_t lamps) {
     if (closed) {
@@ -55,6 +57,13 @@ void name_method(Plan& plan, Effect effect, bool closed) {
             c.rung = "evaluated";
             break;
         case Effect::attenuation:
+            c.rung = "closed form";
+            if (plan.single_precision() && !SceneMedia(plan.media).everywhere()) {
+                c.rung += ", single precision";
+                c.bound += kSinglePrecisionError;
+                c.bound_kind = BoundKind::estimated;
+            }
+            break;
         case Effect::density_height:
         case Effect::density_atmosphere:
             c.rung = "closed form";

@@ -164,7 +164,7 @@ std::optional<RaySpan> span_of_media(const SceneMedia& media, MediumExtent exten
     return all;
 }
 
-bool end_of_light(MediumDepths& depths, const glm::dvec3& lamp, const glm::dvec3& origin,
+bool end_of_light(const MediumDepths& depths, const glm::dvec3& lamp, const glm::dvec3& origin,
                   const glm::dvec3& direction, RaySpan& part) {
     if (!std::isfinite(part.far)) {
         part.far = part.near + kAsFar * (1 + glm::length(lamp - origin));

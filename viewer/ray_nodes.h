@@ -25,7 +25,7 @@ std::optional<RaySpan> span_of_media(const SceneMedia& media, MediumExtent exten
 
 /// A finite end for such a part: no later than where all channels have an optical depth of 20 or
 /// so, and, where nothing ends it, a thousand times as far as the lamp. Whether it is that depth.
-bool end_of_light(MediumDepths& depths, const glm::dvec3& lamp, const glm::dvec3& origin,
+bool end_of_light(const MediumDepths& depths, const glm::dvec3& lamp, const glm::dvec3& origin,
                   const glm::dvec3& direction, RaySpan& part);
 
 struct RayNode {

@@ -58,6 +58,23 @@ ReferenceRenderer::ReferenceRenderer(const World& world, const Plan& plan,
     for (std::size_t i = 0; i < plan_.objects.size(); ++i) {
         materials_.push_back(planned(world.material(i), plan_.objects[i], plan_.everything));
     }
+    if (plan_.single_precision()) {
+        quick_.emplace(world.media());
+        quick_limited_.emplace(world.media(), MediumExtent::limited);
+    }
+}
+
+void ReferenceRenderer::depths(std::size_t count, const glm::dvec3* origins,
+                               const glm::dvec3* directions, const double* distances,
+                               glm::dvec3* out, MediumExtent extent) const {
+    if (quick_ && extent != MediumExtent::endless) {
+        const MediumDepths& quick = extent == MediumExtent::any ? *quick_ : *quick_limited_;
+        quick(count, origins, directions, distances, out);
+        return;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        out[i] = world_.media().depth(origins[i], directions[i], distances[i], extent);
+    }
 }
 
 bool ReferenceRenderer::sees(const glm::dvec3& from, const glm::dvec3& to,

@@ -51,6 +51,7 @@
 #include <vector>
 
 #include "core/method_names.h"
+#include "viewer/medium_depths.h"
 #include "viewer/plan.h"
 #include "viewer/ray_path.h"
 #include "viewer/ray_shadows.h"
@@ -154,6 +155,11 @@ class ReferenceRenderer {
     LampAirlight airlight_along(std::size_t lamp, const LampUse& use, const RayPath& path,
                                 double absolute, ReferenceCounts& counts) const;
     glm::dvec3 particles_along(const RayPiece& piece, ReferenceCounts& counts) const;
+    /// Optical depths of ways through the media, slabs apart, as precise as the plan asks.
+    void depths(std::size_t count, const glm::dvec3* origins, const glm::dvec3* directions,
+                const double* distances, glm::dvec3* out,
+                MediumExtent extent = MediumExtent::any) const;
+    std::vector<double> depths_to(const RayPiece& piece, const std::vector<double>& places) const;
     glm::dvec3 straight_depth(const glm::dvec3& x, const glm::dvec3& direction, double distance,
                               ReferenceCounts& counts) const;
 
@@ -192,6 +198,8 @@ class ReferenceRenderer {
     const World& world_;
     Plan plan_;
     ReferenceOptions options_;
+    /// Where single precision is enough: of all media and of those that end.
+    std::optional<MediumDepths> quick_, quick_limited_;
     bool in_media_;  ///< there is something in the air, or the plan does not ask
     std::vector<SurfaceMaterial> materials_;  ///< of the objects, as the plan has them
 };

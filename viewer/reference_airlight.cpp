@@ -101,29 +101,52 @@ glm::dvec3 ReferenceRenderer::airlight_of(std::size_t lamp, Scatterers which,
         }
         panels.push_back({begin, angle_at(part.end)});
     }
-    const auto integrand = [&](double u) {
-        const double t = foot + height * std::tan(u);
-        if (!(t > 0 && t < distance)) return glm::dvec3(0);
-        ++counts.line_points;
-        const glm::dvec3 x = origin + t * direction;
-        const glm::dvec3 to_light = light.position - x;
-        const double r = glm::length(to_light);
-        if (!(r > 0)) return glm::dvec3(0);
-        const double cosine = std::clamp(glm::dot(to_light / r, direction), -1.0, 1.0);
-        glm::dvec3 sent(0);
-        for (const MediumPart& part : media.parts()) {
-            if (part.is_gaussian() != (which == Scatterers::gaussians)) continue;
-            sent += part.albedo() * part.density(x) * part.phase().at_cosine(cosine);
+    const auto integrand = [&](std::size_t count, const double* angles, glm::dvec3* values) {
+        // Those of the points that send light, and the ways to them and on to the lamp.
+        std::size_t points = 0, index[kPanelPoints];
+        glm::dvec3 from[2 * kPanelPoints], towards[2 * kPanelPoints], depth[2 * kPanelPoints];
+        double length[2 * kPanelPoints];
+        for (std::size_t i = 0; i < count; ++i) {
+            values[i] = glm::dvec3(0);
+            const double t = foot + height * std::tan(angles[i]);
+            if (!(t > 0 && t < distance)) continue;
+            ++counts.line_points;
+            const glm::dvec3 x = origin + t * direction;
+            const glm::dvec3 to_light = light.position - x;
+            const double r = glm::length(to_light);
+            if (!(r > 0)) continue;
+            const double cosine = std::clamp(glm::dot(to_light / r, direction), -1.0, 1.0);
+            for (const MediumPart& part : media.parts()) {
+                if (part.is_gaussian() != (which == Scatterers::gaussians)) continue;
+                values[i] += part.albedo() * part.density(x) * part.phase().at_cosine(cosine);
+            }
+            if (!(largest(values[i]) > 0)) continue;
+            if (!by_parts && shaded && !sees(x, light.position, counts)) {
+                values[i] = glm::dvec3(0);
+                continue;
+            }
+            index[points] = i;
+            from[points] = origin;
+            towards[points] = direction;
+            length[points] = t;
+            from[kPanelPoints + points] = x;
+            towards[kPanelPoints + points] = to_light / r;
+            length[kPanelPoints + points] = r;
+            ++points;
         }
-        if (!(largest(sent) > 0)) return glm::dvec3(0);
-        if (!by_parts && shaded && !sees(x, light.position, counts)) {
-            return glm::dvec3(0);
+        if (!attenuates()) return;
+        counts.attenuations += points;
+        depths(points, from, towards, length, depth);
+        depths(points, from + kPanelPoints, towards + kPanelPoints, length + kPanelPoints,
+               depth + kPanelPoints);
+        for (std::size_t k = 0; k < points; ++k) {
+            const std::size_t on = kPanelPoints + k;
+            const glm::dvec3 left = transmittance_of(
+                depth[k] + depth[on] + slabs.depth(from[on], towards[on], length[on]));
+            // Deep under an exponential layer the density is infinite.
+            glm::dvec3& value = values[index[k]];
+            value = largest(left) > 0 ? value * left : glm::dvec3(0);
         }
-        if (!attenuates()) return sent;
-        const glm::dvec3 left = transmittance_of(media.depth(origin, direction, t) +
-                                                 straight_depth(x, to_light / r, r, counts));
-        // Deep under an exponential layer the density is infinite.
-        return largest(left) > 0 ? sent * left : glm::dvec3(0);
     };
     return light.intensity / height * integrate_panels(integrand, panels, quadrature).value;
 }

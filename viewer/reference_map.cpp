@@ -18,19 +18,17 @@ struct Collision {
 };
 
 // Where on a ray: with the density of the first collision, were the depth between marks spread
-// evenly; what that misses is weighed.
-template <class Depth>
-Collision first_collision(const std::vector<double>& marks, const Depth& depth_to, double xi) {
-    const double last = marks.back();
-    const double all = -std::expm1(-depth_to(last));
-    if (!(all > 0)) return {xi * last, 1 / last};
-    double before = 0, gone = 0;
+// evenly; what that misses is weighed. depths[i] is that to marks[i].
+Collision first_collision(const std::vector<double>& marks, const std::vector<double>& depths,
+                          double xi) {
+    const double all = -std::expm1(-depths.back());
+    if (!(all > 0)) return {xi * marks.back(), 1 / marks.back()};
+    double gone = 0;
     for (std::size_t i = 1;; ++i) {
-        const double depth = i + 1 < marks.size() ? depth_to(marks[i]) : depth_to(last);
+        const double before = depths[i - 1], depth = depths[i];
         const double share = std::exp(-before) * -std::expm1(before - depth);
         if (i + 1 < marks.size() && !(xi * all < gone + share)) {
             gone += share;
-            before = depth;
             continue;
         }
         const double width = marks[i] - marks[i - 1];
@@ -87,25 +85,37 @@ double turned(double x, double by) {
 
 }  // namespace
 
+// Of the channel that has most, of what scatters light of the map from place to place.
+std::vector<double> ReferenceRenderer::depths_to(const RayPiece& piece,
+                                                 const std::vector<double>& places) const {
+    const std::size_t count = places.size();
+    const std::vector<glm::dvec3> origins(count, piece.origin), directions(count, piece.direction);
+    std::vector<glm::dvec3> found(count);
+    depths(count, origins.data(), directions.data(), places.data(), found.data(),
+           piece.slab ? MediumExtent::any : MediumExtent::limited);
+    std::vector<double> most(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (piece.slab) found[i] += piece.slab->extinction * places[i];
+        most[i] = i == 0 ? 0 : std::max(most[i - 1], largest(found[i]));
+    }
+    return most;
+}
+
 glm::dvec3 ReferenceRenderer::airlight_of_map(const RayPiece& piece, const EnvironmentSample& light,
                                               double choice, ReferenceCounts& counts) const {
     const SceneMedia& media = world_.media();
     if (!plan_.everything && !piece.slab && !media.has_limited()) return glm::dvec3(0);
-    const auto depth_to = [&](double t) {
-        const glm::dvec3 depth = media.depth(piece.origin, piece.direction, t);
-        return piece.slab ? depth + piece.slab->extinction * t : depth;
-    };
-    const auto of_scatterers = [&](double t) {
-        return largest(piece.slab
-                           ? depth_to(t)
-                           : media.depth(piece.origin, piece.direction, t, MediumExtent::limited));
-    };
-    const auto [t, pdf] = first_collision(
-        media.marks(piece.origin, piece.direction, piece.distance), of_scatterers, choice);
+    const std::vector<double> marks = media.marks(piece.origin, piece.direction, piece.distance,
+                                                  nullptr, SceneMedia::kDrawnMarks);
+    const std::vector<double> to_marks = depths_to(piece, marks);
+    const auto [t, pdf] = first_collision(marks, to_marks, choice);
     if (!(light.pdf > 0 && pdf > 0)) return glm::dvec3(0);
     const glm::dvec3 x = piece.origin + t * piece.direction;
     ++counts.line_points;
-    const glm::dvec3 sent = transmittance_of(depth_to(t)) * light.radiance / (light.pdf * pdf);
+    glm::dvec3 depth;
+    depths(1, &piece.origin, &piece.direction, &t, &depth);
+    if (piece.slab) depth += piece.slab->extinction * t;
+    const glm::dvec3 sent = transmittance_of(depth) * light.radiance / (light.pdf * pdf);
     if (piece.slab) {
         glm::dvec3 sum(0);
         for (const SlabArrival& way : arrivals_of_direction(*piece.slab, x, light.direction)) {

@@ -21,8 +21,9 @@ glm::dvec3 ReferenceRenderer::straight_depth(const glm::dvec3& x, const glm::dve
                                              double distance, ReferenceCounts& counts) const {
     if (!attenuates()) return glm::dvec3(0);
     ++counts.attenuations;
-    return world_.media().depth(x, direction, distance) +
-           world_.slabs().depth(x, direction, distance);
+    glm::dvec3 depth;
+    depths(1, &x, &direction, &distance, &depth);
+    return depth + world_.slabs().depth(x, direction, distance);
 }
 
 glm::dvec3 ReferenceRenderer::straight_transmittance(const glm::dvec3& x,

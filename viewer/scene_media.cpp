@@ -148,7 +148,7 @@ glm::dvec3 MediumPart::depth(const glm::dvec3& origin, const glm::dvec3& directi
 }
 
 void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-                      double spacing, std::vector<Mark>& marks) const {
+                      const MarkSpacing& spacing, std::vector<Mark>& marks) const {
     const auto add = [&](double at, double width = 0) {
         if (at > 0 && at < distance) marks.push_back({at, width});
     };
@@ -163,11 +163,11 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
         const double off = blob.scale * pass.rho_perp;
         if (!(off < kDenseRadius)) return;
         for (const double step : kMarkSteps) {
-            add(pass.m_proj + step / blob.scale, spacing / blob.scale);
+            add(pass.m_proj + step / blob.scale, spacing.gaussians / blob.scale);
         }
     };
     if (tree_) {
-        for (const std::uint32_t i : tree_->along(origin, direction, distance, 1e-7)) {
+        for (const std::uint32_t i : tree_->along(origin, direction, distance, spacing.faintest)) {
             mark_blob(tree_->blobs()[i]);
         }
     } else if (shapes_.size() == 1) {
@@ -183,7 +183,7 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
                 deepest = std::max(0.0, glm::dot(shell->center - origin, direction));
             }
             for (double step = height / 4; height > 0 && step < 5000 * height;
-                 step *= spacing < SceneMedia::kWideMarks ? 4 : 16) {
+                 step *= spacing.gaussians < 1 ? 4 : 16) {
                 add(deepest - step);
                 add(deepest + step);
             }
@@ -194,8 +194,8 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
 // In the plane of ray and lamp, x along the ray from its point next to the lamp and y towards the
 // lamp, which is at (0, h): what is at (x, y) shades the ray at x h / (h - y).
 void MediumPart::mark_shadows(const glm::dvec3& lamp, const glm::dvec3& origin,
-                              const glm::dvec3& direction, double distance, double spacing,
-                              std::vector<Mark>& marks) const {
+                              const glm::dvec3& direction, double distance,
+                              const MarkSpacing& spacing, std::vector<Mark>& marks) const {
     if (!gaussian_) return;
     const double foot = glm::dot(lamp - origin, direction);
     const glm::dvec3 across = lamp - origin - foot * direction;
@@ -211,7 +211,8 @@ void MediumPart::mark_shadows(const glm::dvec3& lamp, const glm::dvec3& origin,
         const double at = foot + (glm::dot(direction, to) - foot) * stretch;
         for (const double step : kMarkSteps) {
             const double t = at + step * stretch / blob.scale;
-            if (t > 0 && t < distance) marks.push_back({t, spacing * stretch / blob.scale});
+            if (t > 0 && t < distance)
+                marks.push_back({t, spacing.gaussians * stretch / blob.scale});
         }
     };
     if (tree_) {
@@ -220,7 +221,8 @@ void MediumPart::mark_shadows(const glm::dvec3& lamp, const glm::dvec3& origin,
         ray.light = lamp;
         ray.direction = direction;
         ray.dist = distance;
-        for (const std::uint32_t i : tree_->around(ray, 1e-7)) mark_blob(tree_->blobs()[i]);
+        for (const std::uint32_t i : tree_->around(ray, spacing.faintest))
+            mark_blob(tree_->blobs()[i]);
         return;
     }
     for (const Density& density : shapes_[0].parts) {
@@ -277,7 +279,7 @@ glm::dvec3 SceneMedia::transmittance(const glm::dvec3& origin, const glm::dvec3&
 
 std::vector<double> SceneMedia::marks(const glm::dvec3& origin, const glm::dvec3& direction,
                                       double distance, const glm::dvec3* lamp,
-                                      double spacing) const {
+                                      const MarkSpacing& spacing) const {
     std::vector<MediumPart::Mark> all;
     for (const MediumPart& part : parts_) {
         part.mark(origin, direction, distance, spacing, all);

@@ -29,6 +29,12 @@ PhaseFunction phase_of(const ScenePhase& phase);
 /// Which media: those that are the same everywhere, those of some extent or all.
 enum class MediumExtent { any, endless, limited };
 
+/// How near to each other marks of Gaussians may be, in units of their 1 / scale, and the optical
+/// depth that all may have together who get no marks for being faint.
+struct MarkSpacing {
+    double gaussians = 0.9, faintest = 1e-7;
+};
+
 /// One medium: extinction density_c(x) [1/m] in channel c, of which the part albedo_c scatters.
 class MediumPart {
   public:
@@ -63,12 +69,12 @@ class MediumPart {
     };
     /// Adds distances in (0, distance) at which the medium begins or ends along a ray, and those
     /// around which a Gaussian is dense; those of crowding ones may be left out that others are
-    /// nearer to than `spacing`, in units of the Gaussian's 1 / scale.
+    /// nearer to than the spacing.
     void mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-              double spacing, std::vector<Mark>& marks) const;
+              const MarkSpacing& spacing, std::vector<Mark>& marks) const;
     /// Adds those to which light of a lamp comes through a dense Gaussian.
     void mark_shadows(const glm::dvec3& lamp, const glm::dvec3& origin, const glm::dvec3& direction,
-                      double distance, double spacing, std::vector<Mark>& marks) const;
+                      double distance, const MarkSpacing& spacing, std::vector<Mark>& marks) const;
 
     /// The extinction of a medium that is the same everywhere.
     const std::optional<glm::dvec3>& everywhere() const { return everywhere_; }
@@ -125,11 +131,12 @@ class SceneMedia {
     /// With those of shadows in the light of `lamp`, unless it is null.
     std::vector<double> marks(const glm::dvec3& origin, const glm::dvec3& direction,
                               double distance, const glm::dvec3* lamp = nullptr,
-                              double spacing = kFineMarks) const;
+                              const MarkSpacing& spacing = kFineMarks) const;
 
-    /// Rules of 15 nodes are exact to 1e-8 between the former; with the latter they have to be
-    /// halved here and there, which is quicker where 1e-3 is enough.
-    static constexpr double kFineMarks = 0.9, kWideMarks = 3;
+    /// Rules of 15 nodes are exact to 1e-8 between the former; between the second they have to be
+    /// halved here and there, which is quicker where 1e-3 is enough. The third are for drawing
+    /// places between them.
+    static constexpr MarkSpacing kFineMarks{0.9, 1e-7}, kWideMarks{3, 1e-4}, kDrawnMarks{0.9, 1e-4};
 
   private:
     bool has(MediumExtent extent) const;

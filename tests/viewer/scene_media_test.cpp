@@ -8,6 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "viewer/medium_depths.h"
+
 namespace airlight {
 namespace {
 
@@ -140,6 +142,43 @@ TEST(ClipToBox, RaysAlongFacesAreInside) {
     EXPECT_FALSE(clip_to_box(box, {-1, 0.5, 0.5}, {1, 0, 0}, 1));
     EXPECT_FALSE(clip_to_box(box, {-1, 0.5, 0.5}, {-1, -0.0, 0}, kInfinite));
     EXPECT_TRUE(clip_to_box(box, {0.5, 0.5, 0.5}, {1e-300, 1, 0}, kInfinite));
+}
+
+TEST(MediumDepths, SinglePrecisionMissesAHundredThousandthOfTheLight) {
+    const double earth = 6.371e6;
+    std::vector<SceneMedium> media = all_kinds();
+    media.push_back(medium_of(SceneAtmosphere{{0, -earth, 0}, earth, {6e-6, 1.3e-5, 3e-5}, 8000}));
+    media.push_back(medium_of(SceneAtmosphere{{0, -2, 0}, 2, glm::dvec3(1), 0.001}));
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> number(-1, 1);
+    for (const SceneMedium& medium : media) {
+        const SceneMedia one({medium});
+        const MediumDepths depths(one);
+        const auto* const air = std::get_if<SceneAtmosphere>(&medium.kind);
+        // From inside and from up to a thousand times as far.
+        for (int i = 0; i < 4000; ++i) {
+            const double size = (air ? 1.5 * air->radius : 3) *
+                                std::pow(10, i % 2 == 0 ? 0 : 1.5 * (1 + number(random)));
+            const auto point = [&](double scale) {
+                return scale * glm::dvec3(number(random), number(random), number(random));
+            };
+            const glm::dvec3 center = air ? air->center : glm::dvec3(0);
+            const glm::dvec3 from = center + point(size);
+            // Half of the rays aim at the rim of the planet.
+            const double rim = air ? air->radius + 5 * air->scale_height * number(random) : 1;
+            const glm::dvec3 target =
+                i % 4 < 2 ? center + rim * glm::normalize(point(1)) : center + point(size);
+            const glm::dvec3 direction = glm::normalize(target - from);
+            const double distance =
+                i % 5 == 0 ? kInfinite : 2 * glm::length(target - from) * std::abs(number(random));
+            const glm::dvec3 left = transmittance_of(one.depth(from, direction, distance));
+            const glm::dvec3 found = transmittance_of(depths(from, direction, distance));
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(found[c], left[c], 2e-5)
+                    << medium_type(medium) << " " << i << " from " << size;
+            }
+        }
+    }
 }
 
 }  // namespace
