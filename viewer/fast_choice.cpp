@@ -26,6 +26,7 @@ constexpr double kRoom = 0.5;      // of the finest rung's error
 // A bound over the sketch's largest difference, and over its root mean square. Rays of the sketch
 // miss peaks: the 99th percentile of a picture was up to 3.3 times the sketch's largest.
 constexpr double kOfLargest = 4, kOfRootMeanSquare = 6;
+constexpr double kRingCost = 600;     // of rings over that of tables
 constexpr double kFloatError = 1e-5;  // of closed forms in float
 
 std::vector<glm::dvec3> sketch_directions(const World& world) {
@@ -117,8 +118,9 @@ class Chooser {
     Chooser(const World& world, Plan& plan)
         : world_(world),
           plan_(plan),
+          finest_methods_(finest(world)),
           directions_(sketch_directions(world)),
-          finest_(sketch(methods_, true, true)),
+          finest_(sketch(finest_methods_, true, true)),
           truth_(world, plan, directions_) {
         for (const LayeredRadiance& pixel : finest_) {
             const double level = largest(pixel.total());
@@ -272,12 +274,26 @@ class Chooser {
                   without, 0);
             return;
         }
-        pick(Effect::surface_point, {RadianceLayer::surface_point}, kGnTables,
-             &FastMethods::surface_point, {cost, cost, cost});
+        if (world_.media().everywhere()) {
+            pick(Effect::surface_point, {RadianceLayer::surface_point}, kGnTables,
+                 &FastMethods::surface_point, {cost, cost, cost});
+        } else {
+            pick(Effect::surface_point, {RadianceLayer::surface_point}, kSurfaceRungs,
+                 &FastMethods::surface_point, {cost, cost, cost, kRingCost * cost});
+        }
+    }
+
+    // Of all rungs.
+    static FastMethods finest(const World& world) {
+        FastMethods methods;
+        if (!world.media().everywhere()) methods.surface_point = FastSurfacePoint::rings;
+        return methods;
     }
 
     static constexpr NamedMethod<FastSurfacePoint> kGnTables[] = {
         kFastSurfacePoints[1], kFastSurfacePoints[2], kFastSurfacePoints[3]};
+    static constexpr NamedMethod<FastSurfacePoint> kSurfaceRungs[] = {
+        kFastSurfacePoints[1], kFastSurfacePoints[2], kFastSurfacePoints[3], kFastSurfacePoints[4]};
 
     const World& world_;
     Plan& plan_;

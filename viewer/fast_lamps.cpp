@@ -8,6 +8,7 @@
 
 #include "core/constants.h"
 #include "prt/ray_packets.h"
+#include "viewer/fast_arrival.h"
 #include "viewer/material.h"
 #include "viewer/surface_lobes.h"
 
@@ -33,6 +34,7 @@ int size_of(FastSurfacePoint method) {
             return 24;
         case FastSurfacePoint::none:
         case FastSurfacePoint::gn48:
+        case FastSurfacePoint::rings:
             break;
     }
     return 48;
@@ -43,15 +45,6 @@ int shadow_map_size(const Scene& scene) {
 }
 
 }  // namespace
-
-// What a lamp sends to the end of a ray of view.
-struct FastLamps::Arrival {
-    std::uint32_t ray = 0;
-    double distance = 0;     // to the lamp
-    glm::dvec3 to_light{0};  // unit
-    glm::dvec3 depth{0};     // of the way there
-    bool above = false;      // it stands on the side of the face that is seen
-};
 
 FastLamps::FastLamps(const World& world, const Plan& plan, const FastMethods& methods,
                      FastCounts& counts)
@@ -178,6 +171,9 @@ void FastLamps::light_surfaces(FastBlock& block, const RaySums& out, FastCounts&
         }
         add_direct(lamp, block, arrivals, out, counts);
         if (scatters) add_scattered(lamp, block, arrivals, out, counts);
+        if (scatters && methods_.surface_point == FastSurfacePoint::rings) {
+            add_rings(lamp, block, arrivals, out, counts);
+        }
     }
 }
 
@@ -235,7 +231,9 @@ void FastLamps::add_scattered(std::size_t lamp, FastBlock& block,
             const FastRay& ray = block.rays[arrival.ray];
             const SurfaceLobes& lobes = materials_[ray.hit.object];
             glm::dvec3 reflectance(0), axis = ray.hit.normal;
-            if (lobe == 0) reflectance = lobes.diffuse / kPi;
+            if (lobe == 0 && methods_.surface_point != FastSurfacePoint::rings) {
+                reflectance = lobes.diffuse / kPi;
+            }
             if (lobe > 0 && lobe_of_object_[ray.hit.object] == lobe) {
                 reflectance = (n + 1) / (2 * kPi) * lobes.specular;
                 axis = ray.direction - 2 * glm::dot(ray.hit.normal, ray.direction) * ray.hit.normal;

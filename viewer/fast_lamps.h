@@ -40,6 +40,8 @@ class FastLamps {
                     const RaySums& out, FastCounts& counts) const;
     void add_scattered(std::size_t lamp, FastBlock& block, const std::vector<Arrival>& arrivals,
                        const RaySums& out, FastCounts& counts) const;
+    void add_rings(std::size_t lamp, FastBlock& block, const std::vector<Arrival>& arrivals,
+                   const RaySums& out, FastCounts& counts) const;
     void light_uniform(std::size_t lamp, FastBlock& block, const RaySums& out,
                        FastCounts& counts) const;
     void light_fogshop(std::size_t lamp, bool others, FastBlock& block, const RaySums& out,

@@ -17,6 +17,8 @@
 //                           mixed-gl32    6700 (3)      3e-2 (shaft: noise)
 //     airlight.environment  march4 … 32   150 … 1200    2e-2 (terrain), 5e-2 (city)
 //     surface.point         gn16 … gn48   60            1e-2: noise; +180 % of its light in a room
+//                           rings         50000         2.6e-3: noise, where gn has 3.9e-2
+//                           (air-space)
 //     surface.environment   order3 … 32   40            1e-2 (terrain), unshadowed
 //     particles             cells1 … 6    4000 … 25000  2e-4 with cells6
 //     slab                  straight      3000          2e-2
@@ -71,13 +73,14 @@ enum class FastSurfacePoint {
     gn16,  ///< medium/surface_batch.h, with the mean extinction on the way to the lamp: tables of
            ///< 16 x 16 for each exponent
     gn24,
-    gn48,  ///< of 1e-4
+    gn48,   ///< of 1e-4
+    rings,  ///< onto diffuse surfaces from 36 directions, with 8 points on each; glossy lobes by
+            ///< gn48. For media that are not the same everywhere, of which gn knows a mean only
 };
 inline constexpr NamedMethod<FastSurfacePoint> kFastSurfacePoints[] = {
-    {FastSurfacePoint::none, "none"},
-    {FastSurfacePoint::gn16, "gn16"},
-    {FastSurfacePoint::gn24, "gn24"},
-    {FastSurfacePoint::gn48, "gn48"},
+    {FastSurfacePoint::none, "none"},   {FastSurfacePoint::gn16, "gn16"},
+    {FastSurfacePoint::gn24, "gn24"},   {FastSurfacePoint::gn48, "gn48"},
+    {FastSurfacePoint::rings, "rings"},
 };
 
 /// Light of the map that media send along rays. Media that are the same everywhere have tables;

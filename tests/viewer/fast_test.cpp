@@ -481,5 +481,37 @@ TEST_F(FastTest, LayersAddUpToThePicture) {
     EXPECT_GT(picture.layers[layer].pixels.back(), 0);
 }
 
+// A lamp far above a thin layer: light comes from all of the sky alike. G_n knows the layer as a
+// uniform fog all the way to the lamp, and sends two to three times as much.
+TEST_F(FastTest, LightOfALayerOntoSurfacesIsTheReferences) {
+    Scene scene = lamp_in_fog();
+    scene.lights[0] = {{3e6, 4e6, 1e6}, glm::dvec3(3e13)};
+    SceneMedium layer;
+    layer.kind = SceneExponentialHeight{{0.05, 0.1, 0.2}, 2, glm::dvec3(0.9)};
+    layer.phase.type = PhaseType::rayleigh;
+    scene.media = {layer};
+    scene.camera.look_at = {0.5, 0, 2};
+    add_floor(scene, LambertMaterial{glm::dvec3(0.6)});
+    const World world(scene);
+    const auto l = static_cast<std::size_t>(RadianceLayer::surface_point);
+    ReferencePictureOptions options;
+    options.width = 8;
+    options.height = 6;
+    options.samples = 1024;
+    options.layers = true;
+    const double truth = mean_of(render_reference(world, options).layers[l]);
+    FastPictureOptions fast;
+    fast.width = 8;
+    fast.height = 6;
+    fast.layers = true;
+    FastMethods methods;
+    methods.surface_point = FastSurfacePoint::rings;
+    const Plan plan = plan_of_everything(world);
+    // The reference's noise is 1e-3 of it; 36 directions are as good.
+    EXPECT_NEAR(mean_of(render_fast(world, plan, methods, fast).layers[l]), truth, 0.01 * truth);
+    methods.surface_point = FastSurfacePoint::gn48;
+    EXPECT_GT(mean_of(render_fast(world, plan, methods, fast).layers[l]), 1.5 * truth);
+}
+
 }  // namespace
 }  // namespace airlight
