@@ -88,9 +88,8 @@ void compare(const std::string& title, const Scene& scene, int rounds, int sampl
         const double count = double(truth.image.pixels.size());
         fmt::print(
             "{:15} {:8} {:7.3f} Mrays/s  reference {:5.3f}  {:6.1f} x  built in {:.2f} s  rms "
-            "{:.1e} (noise "
-            "{:.0e})  mean {:+.1f} %  shafts {}\n",
-            title, each.name, 1e-6 / time, truth_time / time, 1e-6 / truth_time, each.build,
+            "{:.1e} (noise {:.0e})  mean {:+.1f} %  shafts {}\n",
+            title, each.name, 1e-6 / time, 1e-6 / truth_time, truth_time / time, each.build,
             std::sqrt(squares / count) / brightest, truth.noise,
             sum > 0 ? 100 * difference / sum : 0,
             plan.runs(Effect::shafts) ? method_name(kFastShafts, each.methods.shafts) : "-");

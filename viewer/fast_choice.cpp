@@ -152,7 +152,7 @@ class Chooser {
              {RadianceLayer::airlight_point, RadianceLayer::airlight_gaussians,
               RadianceLayer::particles},
              kFastShafts, &FastMethods::shafts,
-             {0, 150 * lamps, 280 * lamps, 540 * lamps, 2500 * lamps});
+             {0, 40 * lamps, 60 * lamps, 100 * lamps, 500 * lamps});
         pick(Effect::airlight_gaussians, {RadianceLayer::airlight_gaussians}, kFastGaussians,
              &FastMethods::gaussians,
              {300 * blobs * lamps, 300 * blobs * lamps, 8 * node * lamps, 16 * node * lamps,

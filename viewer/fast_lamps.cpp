@@ -40,8 +40,10 @@ int size_of(FastSurfacePoint method) {
     return 48;
 }
 
+// The points on a ray miss more than 256 texels do, and more are out of a processor's own cache:
+// with 512 pictures took 1.3 to 1.5 times as long, with 1024 over twice, and plans chose the same.
 int shadow_map_size(const Scene& scene) {
-    return scene.shafts ? std::min(scene.shafts->shadow_map, 1024) : 512;
+    return scene.shafts ? std::min(scene.shafts->shadow_map, 1024) : 256;
 }
 
 }  // namespace

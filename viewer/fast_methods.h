@@ -9,8 +9,8 @@
 //                           mixed-gl16    3800          6e-5
 //                           mixed-gl32    6000          5e-7
 //     shafts                unshadowed    0             1e-3 (spheres), 2e-2 (room from outside)
-//                           map16 … 64    250 … 1000    5e-4 … 2e-4
-//                           intervals     700 … 3000    2e-5, float
+//                           map16 … 64    20 … 130      5e-4 … 2e-4
+//                           intervals     250 … 1100    2e-5, float
 //     airlight.gaussians    fogshop       1200 (3)      3e-2 (halo), 3e-1 (shaft, 68 blobs)
 //                           mixed-gl8     3200 (3)      1e-2 (steam), 6e-2 (shaft)
 //                           mixed-gl16    4300 (3)      3e-2 (shaft)
