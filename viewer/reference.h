@@ -37,9 +37,9 @@
 //
 // Camera rays per CPU second, one thread, with one lamp, shadows in the media and all that the
 // surfaces scatter, line integrals to 1e-3 (bench/reference_bench.cpp, on a machine with other
-// work): fog alone 5.4e6; over a floor with three balls of 224 triangles 1.1e6 in grey fog, 0.78e6
-// in coloured, 0.58e6 with Henyey-Greenstein's phase function, 0.03e6 with a Gaussian besides; with
-// balls of 65024 triangles 0.23e6. That is 7.6, 5.9, 3.6, 1.2 and 2.3 times as many as by
+// work): fog alone 5.3e6; over a floor with three balls of 224 triangles 1.1e6 in grey fog, 0.78e6
+// in coloured, 0.57e6 with Henyey-Greenstein's phase function, 0.09e6 with a Gaussian besides; with
+// balls of 65024 triangles 0.27e6. That is 6.8, 5.7, 3.3, 1.9 and 2.4 times as many as by
 // RayAirlight::points, which is off by 1e-5 of the brightest ray where shadows fall (root mean
 // square). Slabs are slow, since each point of theirs has shadow rays of its own, which see borders
 // of shadows between points only by halving panels: a picture with a box that fills a tenth of it

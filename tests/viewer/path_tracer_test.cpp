@@ -10,13 +10,11 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "bench/ball.h"
 #include "core/error.h"
 #include "core/threads.h"
-#include "envmap/io.h"
 #include "medium/airlight.h"
 #include "medium/point_glow.h"
-#include "tests/core/scratch_directory.h"
+#include "tests/viewer/scene_fixture.h"
 #include "viewer/media_sampling.h"
 #include "viewer/reference_picture.h"
 
@@ -25,7 +23,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-struct Mean {
+struct SampleMean {
     glm::dvec3 mean{0}, squares{0};
     int count = 0;
 
@@ -40,31 +38,14 @@ struct Mean {
     }
 };
 
-SceneMedium uniform(double scattering, double absorption) {
-    SceneMedium medium;
-    medium.kind = SceneUniform{glm::dvec3(scattering), glm::dvec3(absorption)};
-    return medium;
-}
-
 SceneMedium with_hg(SceneMedium medium, double g) {
     medium.phase.type = PhaseType::henyey_greenstein;
     medium.phase.g = g;
     return medium;
 }
 
-class PathTracerTest : public testing::Test {
+class PathTracerTest : public SceneFixture {
   protected:
-    SceneFile file(const std::string& name) const {
-        return {directory_ / name, name, "scene.json:1"};
-    }
-    void add_sky(Scene& scene, double radiance, double distance) {
-        Image map(8, 4, 3);
-        std::fill(map.pixels.begin(), map.pixels.end(), static_cast<float>(radiance));
-        write_image(directory_ / "sky.exr", map);
-        scene.environment = EnvironmentLight{};
-        scene.environment->file = file("sky.exr");
-        scene.environment->distance = distance;
-    }
     void add_object(Scene& scene, const std::string& name, const Material& material,
                     const glm::dmat4& transform = glm::dmat4(1)) const {
         SceneObject object;
@@ -79,13 +60,6 @@ class PathTracerTest : public testing::Test {
             << "v -20 -1 -20\nv -20 -1 20\nv 20 -1 20\nv 20 -1 -20\nf 1 2 3\nf 1 3 4\n";
         add_object(scene, "floor.obj", material);
     }
-    void add_ball(Scene& scene, const Material& material, double radius) const {
-        write_ball(directory_ / "ball.obj", 6);
-        glm::dmat4 transform(radius);
-        transform[3] = {0, 0, 0, 1};
-        add_object(scene, "ball.obj", material, transform);
-    }
-
     /// A box of 2 x 1 x 3 m; its faces share no corners, so their normals are their own.
     void write_room() const {
         std::ofstream out(directory_ / "room.obj");
@@ -107,9 +81,9 @@ class PathTracerTest : public testing::Test {
 
     // Rays into a pyramid of 9 degrees about -Z, one sample each, the same for both.
     template <class Renderer>
-    Mean mean_of(const Renderer& renderer, const glm::dvec3& eye, int samples,
-                 std::uint64_t pixel) {
-        Mean mean;
+    SampleMean mean_of(const Renderer& renderer, const glm::dvec3& eye, int samples,
+                       std::uint64_t pixel) {
+        SampleMean mean;
         for (int i = 0; i < samples; ++i) {
             SampleStream stream(pixel, static_cast<std::uint64_t>(i));
             const double x = stream.next() - 0.5, y = stream.next() - 0.5;
@@ -123,37 +97,34 @@ class PathTracerTest : public testing::Test {
         PathTracerOptions single;
         single.single = true;
         const glm::dvec3 eye(0, 0.3, 5);
-        const Mean paths = mean_of(PathTracer(world, single), eye, samples, 1);
+        const SampleMean paths = mean_of(PathTracer(world, single), eye, samples, 1);
         ReferenceOptions quadrature;
         quadrature.quadrature = 1e-3;
-        const Mean truth = mean_of(ReferenceRenderer(world, quadrature), eye, samples / 6, 2);
+        const SampleMean truth = mean_of(ReferenceRenderer(world, quadrature), eye, samples / 6, 2);
         for (int c = 0; c < 3; ++c) {
             const double error = std::hypot(paths.error(c), truth.error(c));
             EXPECT_LT(error, 5e-3 * truth.mean[c]) << "too few samples to tell";
             EXPECT_NEAR(paths.mean[c], truth.mean[c], 3 * error) << c;
         }
     }
-
-    ScratchDirectory directory_;
-    ReferenceCounts counts_;
 };
 
 TEST_F(PathTracerTest, ScatteredOnceAlongRaysItIsTheReference) {
     Scene scene;
     scene.lights = {{{2, 2.2, 2}, glm::dvec3(3, 2, 1)}};
-    scene.media = {uniform(0.2, 0.05)};
+    scene.media = {uniform_medium(0.2, 0.05)};
     {
         SCOPED_TRACE("fog");
         expect_single_is_reference(scene, 60000);
     }
     {
         SCOPED_TRACE("hg");
-        scene.media = {with_hg(uniform(0.2, 0), 0.7)};
+        scene.media = {with_hg(uniform_medium(0.2, 0), 0.7)};
         expect_single_is_reference(scene, 60000);
     }
     {
         SCOPED_TRACE("coloured, two phase functions");
-        scene.media = {uniform(0.1, 0), with_hg(uniform(0.1, 0.1), -0.5)};
+        scene.media = {uniform_medium(0.1, 0), with_hg(uniform_medium(0.1, 0.1), -0.5)};
         scene.media[0].kind = SceneUniform{{0.05, 0.2, 0.6}, {0, 0.1, 0}};
         expect_single_is_reference(scene, 60000);
     }
@@ -163,7 +134,7 @@ TEST_F(PathTracerTest, ScatteredOnceAlongRaysItIsTheReference) {
         steam.kind = SceneGaussians{
             {{{0, 0, 0}, 1, 0.8}, {{0.5, 0.8, 1.2}, 3, 3}}, {}, glm::dvec3(0.5, 1, 1)};
         layer.kind = SceneExponentialHeight{glm::dvec3(0.05, 0.06, 0.1), 3, glm::dvec3(0.9)};
-        scene.media = {uniform(0.01, 0), steam, layer, with_hg(uniform(0.3, 0), 0.4)};
+        scene.media = {uniform_medium(0.01, 0), steam, layer, with_hg(uniform_medium(0.3, 0), 0.4)};
         scene.media[3].bounds = SceneBox{{-3, 0.2, -4}, {3, 0.6, 3}};
         expect_single_is_reference(scene, 60000);
     }
@@ -172,11 +143,11 @@ TEST_F(PathTracerTest, ScatteredOnceAlongRaysItIsTheReference) {
 TEST_F(PathTracerTest, ScatteredOnceOnSurfacesItIsTheReference) {
     Scene scene;
     scene.lights = {{{2, 2.2, 2}, glm::dvec3(3, 2, 1)}, {{-5, 3, -2}, glm::dvec3(4)}};
-    scene.media = {uniform(0.1, 0.02)};
+    scene.media = {uniform_medium(0.1, 0.02)};
     PhongMaterial phong;
     phong.exponent = 5;
     add_floor(scene, LambertMaterial{{0.6, 0.5, 0.3}});
-    add_ball(scene, phong, 0.7);
+    add_ball(scene, glm::dvec3(0), 0.7, 6, phong);
     {
         SCOPED_TRACE("lamps");
         expect_single_is_reference(scene, 200000);
@@ -202,12 +173,12 @@ TEST_F(PathTracerTest, AFurnaceIsAsBrightAsItsWalls) {
     // Nothing absorbs, so every path of light ends at the sky, which is 1 everywhere.
     Scene scene;
     add_sky(scene, 1, 50);
-    SceneMedium rayleigh = uniform(0.7, 0), steam;
+    SceneMedium rayleigh = uniform_medium(0.7, 0), steam;
     rayleigh.phase.type = PhaseType::rayleigh;
     rayleigh.bounds = SceneBox{{-1, -1, -1}, {1, 1, 1}};
     steam.kind = SceneGaussians{{{{0.2, 0.1, 0.5}, 2, 3}}, {}, glm::dvec3(1)};
     scene.media = {rayleigh, with_hg(steam, 0.8)};
-    scene.media.push_back(uniform(0, 0));
+    scene.media.push_back(uniform_medium(0, 0));
     scene.media[2].kind = SceneUniform{{0.02, 0.1, 0.5}, glm::dvec3(0)};
     scene.media[2].bounds = SceneBox{{-2, -0.5, -0.5}, {2, 0.5, 0.5}};
     for (const bool box : {false, true}) {
@@ -218,7 +189,7 @@ TEST_F(PathTracerTest, AFurnaceIsAsBrightAsItsWalls) {
             add_object(scene, "room.obj", LambertMaterial{glm::dvec3(1)}, small);
         }
         const World world(scene);
-        const Mean mean = mean_of(PathTracer(world, {}), {0, 0, 3}, 20000, 3);
+        const SampleMean mean = mean_of(PathTracer(world, {}), {0, 0, 3}, 20000, 3);
         for (int c = 0; c < 3; ++c) {
             EXPECT_LT(mean.error(c), 5e-3);
             EXPECT_NEAR(mean.mean[c], 1, 3 * mean.error(c) + 1e-12) << box << c;
@@ -235,12 +206,12 @@ TEST_F(PathTracerTest, ARoomThatOnlyItsWallsDarkenKeepsTheLampsPower) {
         write_room();
         add_object(scene, "room.obj", LambertMaterial{glm::dvec3(kAlbedo)});
         scene.lights = {{{0.8, 0.6, 1.2}, glm::dvec3(kIntensity)}};
-        scene.media = {with_hg(uniform(0.5, 0), g)};
+        scene.media = {with_hg(uniform_medium(0.5, 0), g)};
         const World world(scene);
         const PathTracer tracer(world, {});
         const double area = 2 * (2 * 1 + 2 * 3 + 1 * 3);
         const double expected = kAlbedo * 4 * kIntensity / (area * (1 - kAlbedo));
-        Mean mean;
+        SampleMean mean;
         for (int i = 0; i < 250000; ++i) {
             SampleStream stream(5, static_cast<std::uint64_t>(i));
             // A point of the walls, seen from close by.
@@ -279,14 +250,14 @@ TEST_F(PathTracerTest, GlowsInEndlessFogAreThoseOfTransportTheory) {
     for (const double albedo : {1.0, 0.9}) {
         Scene scene;
         scene.lights = {{{0, 0, 0}, glm::dvec3(1)}};
-        scene.media = {uniform(0.5 * albedo, 0.5 * (1 - albedo))};
+        scene.media = {uniform_medium(0.5 * albedo, 0.5 * (1 - albedo))};
         const World world(scene);
         const PathTracer tracer(world, options);
         const PointGlow glow(albedo);
         for (const double gamma : {0.2, 1.0}) {
             const double t_sv = albedo < 1 ? 1.5 : 0.5;
             const glm::dvec3 eye(0, 0, 2 * t_sv);
-            Mean mean;
+            SampleMean mean;
             for (int i = 0; i < 100000; ++i) {
                 SampleStream stream(1, static_cast<std::uint64_t>(i));
                 mean.add(
@@ -305,7 +276,7 @@ TEST_F(PathTracerTest, GlowsInEndlessFogAreThoseOfTransportTheory) {
 TEST_F(PathTracerTest, APictureStopsAsAWholeAtItsToleranceForAnyNumberOfThreads) {
     Scene scene;
     scene.lights = {{{0.5, 1, 0}, glm::dvec3(1)}};
-    scene.media = {uniform(0.3, 0.1)};
+    scene.media = {uniform_medium(0.3, 0.1)};
     scene.camera.position = {0, 0, 3};
     scene.camera.look_at = {0, 0, 0};
     const World world(scene);

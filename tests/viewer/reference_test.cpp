@@ -13,13 +13,12 @@
 
 #include "bench/ball.h"
 #include "core/threads.h"
-#include "envmap/io.h"
 #include "medium/airlight.h"
 #include "medium/gaussian_airlight.h"
 #include "medium/phase_airlight.h"
 #include "medium/shafts.h"
 #include "medium/surface_shading.h"
-#include "tests/core/scratch_directory.h"
+#include "tests/viewer/scene_fixture.h"
 #include "viewer/camera.h"
 #include "viewer/reference_picture.h"
 
@@ -28,58 +27,18 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-SceneMedium uniform(double scattering, double absorption) {
-    SceneMedium medium;
-    medium.kind = SceneUniform{glm::dvec3(scattering), glm::dvec3(absorption)};
-    return medium;
-}
-
-SceneMedium gaussians(std::vector<GaussianBlob> blobs) {
-    SceneMedium medium;
-    medium.kind = SceneGaussians{std::move(blobs), {}, glm::dvec3(1)};
-    return medium;
-}
-
-class ReferenceTest : public testing::Test {
+class ReferenceTest : public SceneFixture {
   protected:
-    SceneFile file(const std::string& name) const {
-        return {directory_ / name, name, "scene.json:1"};
-    }
-
-    /// A map of one radiance everywhere.
-    void add_sky(Scene& scene, double radiance, double distance) {
-        Image map(8, 4, 3);
-        std::fill(map.pixels.begin(), map.pixels.end(), static_cast<float>(radiance));
-        write_image(directory_ / "sky.exr", map);
-        scene.environment = EnvironmentLight{};
-        scene.environment->file = file("sky.exr");
-        scene.environment->distance = distance;
-    }
-
-    /// A triangle of that size around the origin that looks at +Z.
-    void add_triangle(Scene& scene, double size, const Material& material) const {
-        std::ofstream(directory_ / "triangle.obj")
-            << "v " << -size << " " << -size << " 0\nv " << 2 * size << " " << -size << " 0\nv 0 "
-            << 2 * size << " 0\nf 1 2 3\n";
-        SceneObject object;
-        object.mesh = file("triangle.obj");
-        object.material = material;
-        scene.objects.push_back(object);
-    }
-
     /// A triangle of 200 m that looks up, askew.
     void write_wall(const std::string& name) const {
         std::ofstream(directory_ / name) << "v -99 -20 -99\nv 0 9 99\nv 99 -9 -99\nf 1 2 3\n";
     }
     Scene shady_scene(std::uint64_t seed) const;
-
-    ScratchDirectory directory_;
-    ReferenceCounts counts_;
 };
 
 TEST_F(ReferenceTest, AirlightOfUniformFogIsTheClosedForm) {
     Scene scene;
-    scene.media = {uniform(0.3, 0.1)};
+    scene.media = {uniform_medium(0.3, 0.1)};
     scene.lights = {{{1, 2, 5}, glm::dvec3(10)}, {{0, -0.01, 3}, glm::dvec3(4, 5, 6)}};
     const World world(scene);
     ReferenceOptions options;
@@ -108,9 +67,9 @@ TEST_F(ReferenceTest, AirlightOfUniformFogIsTheClosedForm) {
 TEST_F(ReferenceTest, ShadowsOfGaussiansAreFound) {
     Scene scene;
     scene.lights = {{{-20, -10.6, 16.7}, glm::dvec3(1)}};
-    scene.media = {uniform(0.0012, 0), gaussians({{{-9.2, -9, -0.1}, 0.42, 0.037},
-                                                  {{-3.1, -31.3, -17.8}, 0.88, 0.234},
-                                                  {{17.6, 38.9, 0.5}, 2.9, 0.227}})};
+    scene.media = {uniform_medium(0.0012, 0), gaussian_medium({{{-9.2, -9, -0.1}, 0.42, 0.037},
+                                                               {{-3.1, -31.3, -17.8}, 0.88, 0.234},
+                                                               {{17.6, 38.9, 0.5}, 2.9, 0.227}})};
     const World world(scene);
     ReferenceOptions coarse, fine;
     coarse.quadrature = 2e-4;
@@ -134,7 +93,7 @@ TEST_F(ReferenceTest, ShadowsOfGaussiansAreFound) {
 // Most of such a ray is a sliver of the angle at the lamp.
 TEST_F(ReferenceTest, RaysThatPassALampCloselyMeetTheirTolerance) {
     Scene scene;
-    scene.media = {gaussians({{{0, 0.3, 4}, 0.8, 0.5}})};
+    scene.media = {gaussian_medium({{{0, 0.3, 4}, 0.8, 0.5}})};
     ReferenceOptions coarse, fine;
     coarse.quadrature = 2e-3;
     fine.quadrature = 1e-9;
@@ -184,7 +143,7 @@ TEST_F(ReferenceTest, AnAtmosphereIsFoundHoweverFarTheLampIs) {
 
 TEST_F(ReferenceTest, PhaseFunctionsTurnTheRightWay) {
     Scene scene;
-    scene.media = {uniform(0.3, 0)};
+    scene.media = {uniform_medium(0.3, 0)};
     scene.media[0].phase.type = PhaseType::henyey_greenstein;
     scene.media[0].phase.g = 0.7;
     scene.lights = {{{1, 0, 3}, glm::dvec3(2)}};
@@ -205,7 +164,7 @@ TEST_F(ReferenceTest, AirlightOfGaussiansIsThatOfTheirQuadrature) {
     GaussianMedium medium{0.05,
                           {{{0.2, 0.1, 2}, 3, 2}, {{-0.5, 0, 4}, 0.7, 0.5}, {{0, 0.01, 6}, 40, 5}}};
     Scene scene;
-    scene.media = {uniform(0.05, 0), gaussians(medium.blobs)};
+    scene.media = {uniform_medium(0.05, 0), gaussian_medium(medium.blobs)};
     scene.lights = {{{0.5, 1, 3}, glm::dvec3(1)}};
     const World world(scene);
     ReferenceOptions options;
@@ -222,7 +181,7 @@ TEST_F(ReferenceTest, AirlightOfGaussiansIsThatOfTheirQuadrature) {
 
 TEST_F(ReferenceTest, AMediumInABoxIsThePartOfItsRayInIt) {
     Scene scene;
-    scene.media = {uniform(0.4, 0)};
+    scene.media = {uniform_medium(0.4, 0)};
     scene.media[0].bounds = SceneBox{{-10, -10, 2}, {10, 10, 5}};
     scene.lights = {{{0.3, 0, 3}, glm::dvec3(1)}};
     const World world(scene);
@@ -240,7 +199,7 @@ TEST_F(ReferenceTest, AMediumInABoxIsThePartOfItsRayInIt) {
 TEST_F(ReferenceTest, SurfacesInFogAreThoseOfTheClosedForms) {
     // A small triangle: the fog is all around, as the closed form has it.
     Scene scene;
-    scene.media = {uniform(0.25, 0.05)};
+    scene.media = {uniform_medium(0.25, 0.05)};
     scene.lights = {{{1, 0.5, 2}, glm::dvec3(3)}};
     PhongMaterial phong;
     phong.diffuse = glm::dvec3(0.5);
@@ -302,7 +261,7 @@ TEST_F(ReferenceTest, AWhiteSkyLightsAFlatSurfaceWithItsAlbedo) {
 
 TEST_F(ReferenceTest, ObjectsShadeTheMediumBehindThem) {
     Scene scene;
-    scene.media = {uniform(0.1, 0)};
+    scene.media = {uniform_medium(0.1, 0)};
     scene.lights = {{{0, 0, 1}, glm::dvec3(1)}};
     add_triangle(scene, 100, LambertMaterial{});
     const World world(scene);
@@ -352,7 +311,7 @@ TEST_F(ReferenceTest, PartsOfARayThatALampReachesAreThoseOfShadowRays) {
     int probed = 0, shaded = 0, wrong = 0;
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         Scene scene = shady_scene(seed);
-        scene.media = {uniform(0.1, 0)};
+        scene.media = {uniform_medium(0.1, 0)};
         const World world(scene);
         ASSERT_NE(world.shadows(), nullptr);
         for (int i = 0; i < 40; ++i) {
@@ -389,9 +348,9 @@ TEST_F(ReferenceTest, LineIntegralsAreWithinTheirTolerance) {
     // Against 1e-8, over media in which each way of summing is taken, shadows among them.
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
         Scene scene = shady_scene(seed);
-        scene.media = {uniform(0.1, 0.02)};
+        scene.media = {uniform_medium(0.1, 0.02)};
         if (seed % 3 == 1) {
-            scene.media.push_back(gaussians({{{0, 1, 0}, 1.5, 0.8}, {{1, 0, -1}, 4, 2}}));
+            scene.media.push_back(gaussian_medium({{{0, 1, 0}, 1.5, 0.8}, {{1, 0, -1}, 4, 2}}));
         }
         if (seed % 3 == 2) {
             scene.media[0].phase.type = PhaseType::henyey_greenstein;
@@ -430,7 +389,7 @@ TEST_F(ReferenceTest, ClosedFormsAndQuadratureSumTheSameShadows) {
     double by_points = 0, by_parts = 0;
     for (std::uint64_t seed = 0; seed < 4; ++seed) {
         Scene scene = shady_scene(seed);
-        scene.media = {uniform(0.1, 0.02), uniform(0.03, 0)};
+        scene.media = {uniform_medium(0.1, 0.02), uniform_medium(0.03, 0)};
         scene.media[1].phase.type = PhaseType::henyey_greenstein;
         scene.media[1].phase.g = -0.4;
         if (seed % 2 == 1) {
@@ -470,7 +429,7 @@ TEST_F(ReferenceTest, ClosedFormsAndQuadratureSumTheSameShadows) {
 
 TEST_F(ReferenceTest, ParticlesSendTheLightThatTheMarchOfShaftsTendsTo) {
     Scene scene;
-    scene.media = {uniform(0.05, 0.01)};
+    scene.media = {uniform_medium(0.05, 0.01)};
     scene.lights = {{{1.3, 2.2, 4.1}, glm::dvec3(3)}};
     scene.shafts = SceneShafts{};
     ReferenceOptions options;
@@ -516,7 +475,7 @@ TEST_F(ReferenceTest, ParticlesSendTheLightThatTheMarchOfShaftsTendsTo) {
 
 TEST_F(ReferenceTest, PicturesAreTheSameForAnyNumberOfThreads) {
     Scene scene;
-    scene.media = {uniform(0.1, 0)};
+    scene.media = {uniform_medium(0.1, 0)};
     scene.lights = {{{0.5, 1, 2}, glm::dvec3(1)}};
     scene.camera.position = {0, 0, 3};
     scene.camera.look_at = {0, 0, 0};

@@ -24,6 +24,10 @@ inline SceneMedium uniform_medium(const glm::dvec3& scattering, const glm::dvec3
     return medium;
 }
 
+inline SceneMedium uniform_medium(double scattering, double absorption) {
+    return uniform_medium(glm::dvec3(scattering), glm::dvec3(absorption));
+}
+
 inline SceneMedium gaussian_medium(std::vector<GaussianBlob> blobs, double albedo = 1) {
     SceneMedium medium;
     medium.kind = SceneGaussians{std::move(blobs), {}, glm::dvec3(albedo)};
