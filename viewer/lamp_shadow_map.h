@@ -47,9 +47,10 @@ class LampShadowMap {
     /// sees; borders between them come from halving, to 1/64 of the angle between two. What lies
     /// between two points unseen is missed. In floats, a vector of rays at a time.
     ///
-    /// Cost per ray with 256 texels and AVX-512: 5 to 60 ns with 16 points, 55 to 130 with 64,
-    /// where a point at a time took 250 to 1000. Look-ups take most of it: no order of the texels
-    /// was faster, by lines or by tiles of 4 x 4, nor was a reciprocal in place of the division.
+    /// Cost per ray with 256 texels a side and AVX-512: 5 to 60 ns with 16 points, 55 to 130 with
+    /// 64, where a point at a time took 250 to 1000. Look-ups take most of it: no order of the
+    /// texels was faster, by lines or by tiles of 4 x 4, nor was a reciprocal in place of the
+    /// division.
     void lit(const glm::dvec3& origin, const RayColumns& rays, int points,
              std::vector<LitPart>& parts) const;
 
