@@ -6,7 +6,7 @@ Usage: make_scenes.py FOLDER [PROGRAM]
 
 Writes FOLDER/*.json and FOLDER/meshes/*.obj and, with the path of airlight, bakes FOLDER/meshes/*.prt;
 data/scenes holds the result. Everything is made of
-spheres, boxes, quads and one height field. +Y up, metres. Needs nothing beyond Python's own
+spheres, boxes, quads, discs and one height field. +Y up, metres. Needs nothing beyond Python's own
 library, and writes the same bytes wherever it runs.
 """
 import json
@@ -14,6 +14,21 @@ import math
 import os
 import subprocess
 import sys
+
+
+def faces_of_rings(count, columns, closed=True):
+    """Between rings of vertices, of which the first, and the last of closed ones, is one point."""
+    faces = []
+    for i in range(count - 1):
+        for j in range(columns):
+            a, b = i * columns + j, i * columns + (j + 1) % columns
+            if i == 0:
+                faces.append([a, a + columns, b + columns])
+            elif closed and i == count - 2:
+                faces.append([a, a + columns, b])
+            else:
+                faces.append([a, a + columns, b + columns, b])
+    return faces
 
 
 class Mesh:
@@ -46,23 +61,14 @@ class Mesh:
 
     def sphere(self, centre, radius, rings):
         columns = 2 * rings
-        vertices, faces = [], []
+        vertices = []
         for i in range(rings + 1):
             for j in range(columns):
                 theta, phi = math.pi * i / rings, 2 * math.pi * j / columns
                 vertices.append((centre[0] + radius * math.sin(theta) * math.sin(phi),
                                  centre[1] + radius * math.cos(theta),
                                  centre[2] + radius * math.sin(theta) * math.cos(phi)))
-        for i in range(rings):
-            for j in range(columns):
-                a, b = i * columns + j, i * columns + (j + 1) % columns
-                if i == 0:
-                    faces.append([a, a + columns, b + columns])
-                elif i == rings - 1:
-                    faces.append([a, a + columns, b])
-                else:
-                    faces.append([a, a + columns, b + columns, b])
-        return self.add(vertices, faces)
+        return self.add(vertices, faces_of_rings(rings + 1, columns))
 
     def write(self, path):
         with open(path, "w", newline="\n") as out:
@@ -114,9 +120,12 @@ def courtyard():
 
 
 def window():
-    """A room's wall with a barred window, and the floor and wall that it lights."""
+    """A closed room with a barred window."""
     mesh = Mesh().quad((-4, 0, 6), (4, 0, 6), (4, 0, -4), (-4, 0, -4))
     mesh.quad((-4, 0, -4), (4, 0, -4), (4, 5, -4), (-4, 5, -4))
+    mesh.quad((-4.2, 5, -4), (4, 5, -4), (4, 5, 6), (-4.2, 5, 6))
+    mesh.quad((4, 0, -4), (4, 0, 6), (4, 5, 6), (4, 5, -4))
+    mesh.quad((4, 0, 6), (-4.2, 0, 6), (-4.2, 5, 6), (4, 5, 6))
     thick = (-4.2, -4.0)
     for y, z in (((0, 1.6), (-4, 6)), ((3.6, 5), (-4, 6)), ((1.6, 3.6), (-4, -1)),
                  ((1.6, 3.6), (2, 6)), ((1.6, 3.6), (0.4, 0.6)), ((2.5, 2.7), (-1, 2))):
@@ -129,6 +138,35 @@ def lamps():
     for x, z in STREET:
         mesh.prism((x, 0, z), 0.08, 3.85, 8)
     return mesh.quad((-40, 0, 20), (40, 0, 20), (40, 0, -80), (-40, 0, -80))
+
+
+EARTH = 6371000
+# Where air-space looks from, off the planet's centre.
+SPACE = (0, 2200000 + EARTH, -3000000)
+
+
+def planet():
+    """A unit sphere, finest where the camera in space sees it."""
+    near, columns = math.acos(EARTH / math.hypot(*SPACE)), 180
+    angles = [near * 1.03 * i / 44 for i in range(45)]
+    angles += [angles[-1] + (math.pi - angles[-1]) * (i / 16) ** 1.3 for i in range(1, 17)]
+    tilt = math.atan2(SPACE[2], SPACE[1])
+    vertices = []
+    for theta in angles:
+        for j in range(columns):
+            phi = 2 * math.pi * j / columns
+            x, y, z = math.sin(theta) * math.sin(phi), math.cos(theta), math.sin(theta) * math.cos(phi)
+            vertices.append((x, y * math.cos(tilt) - z * math.sin(tilt),
+                             y * math.sin(tilt) + z * math.cos(tilt)))
+    return Mesh().add(vertices, faces_of_rings(len(angles), columns))
+
+
+def ground():
+    """What is seen of the planet from the ground, 60 km of it."""
+    columns, radii = 96, [0.0] + [60000 * 1.35 ** (i - 26) for i in range(27)]
+    vertices = [(r * math.sin(2 * math.pi * j / columns), -r * r / (2 * EARTH),
+                 r * math.cos(2 * math.pi * j / columns)) for r in radii for j in range(columns)]
+    return Mesh().add(vertices, faces_of_rings(len(radii), columns, closed=False))
 
 
 STREET = [(-2.2, 0), (0.3, -10), (3.6, -24)]
@@ -202,7 +240,7 @@ def scenes():
         row = [thing("sphere", material, [x, 1, 0]) for x, material in (
             (-2.4, lambert([0.6, 0.45, 0.3])), (0, phong([0.3, 0.2, 0.15], 0.4, 10)),
             (2.4, phong([0.3, 0.2, 0.15], 0.4, 20)))]
-        yield name, {"camera": camera([0, 1.4, 9], [0, 1, 0], 30),
+        yield name, {"camera": camera([0, 2.2, 14], [0, 1, 0], 18),
                      "lights": [point([3.5, 4, 4], [60, 55, 50])],
                      **({"media": [uniform(materials)]} if materials else {}),
                      "objects": [thing("floor", lambert(0.35))] + row}
@@ -236,7 +274,7 @@ def scenes():
 
     yield "terrain", {"camera": camera([2, 9, 27], [0, 2.5, 0], 42),
                       "environment": {"file": SKY, "distance": 40},
-                      "media": [patches(60, 26, -1, 3, 0.34, 0.10)],
+                      "media": [patches(26, 25, -0.5, 2.5, 0.3, 0.22)],
                       "objects": [thing("terrain", lambert([0.3, 0.33, 0.22]))]}
     yield "city", {"camera": camera([2, 5, 34], [0, 7, -20], 45),
                    "environment": {"file": SKY, "distance": 120},
@@ -251,23 +289,24 @@ def scenes():
                            "lights": [point([0.1, 0.05, 0], [6, 6, 6])],
                            "media": [blobs([([0.55, 0.1, 0.1], 4, 1.6), ([-0.6, 0.3, -0.4], 1, 0.4),
                                             ([0.2, -0.8, 0.5], 1.2, 0.3)])]}
-    ring = [([0.95 * math.sin(a), y, 0.95 * math.cos(a)], 3.4, 5)
-            for y in (-0.9, -0.45, 0, 0.45, 0.9)
-            for a in (2 * math.pi * i / 14 for i in range(14)) if not (y == 0 and 1.2 < a < 1.9)]
+    ring = [([0.95 * math.sin(a), y, 0.95 * math.cos(a)], 2.4, 2.8)
+            for y in (-0.9, -0.3, 0.3, 0.9)
+            for a in (2 * math.pi * i / 8 for i in range(8)) if not (abs(y) < 0.5 and 1.5 < a < 1.6)]
     yield "failure-shaft", {"camera": camera([0, 0.4, 6], [0.6, 0, 0], 40, (480, 480)),
                             "lights": [point([0, 0, 0], [30, 28, 24])],
                             "media": [blobs(ring), uniform(0.03)]}
 
-    air = {"type": "atmosphere", "radius": 6371000, "density": [5.8e-6, 1.35e-5, 3.31e-5],
+    air = {"type": "atmosphere", "radius": EARTH, "density": [5.8e-6, 1.35e-5, 3.31e-5],
            "scale_height": 8000, "phase": {"type": "rayleigh"}}
     yield "air-ground", {"camera": camera([0, 100, 0], [0, 1600, 10000], 60),
                          "lights": [point([6e9, 5e9, 9e9], [3e20, 3e20, 3e20])],
-                         "media": [air]}
-    yield "air-space", {"camera": camera([0, 2200000, -3000000], [0, -1200000, 0], 50, (480, 480)),
+                         "media": [air],
+                         "objects": [thing("ground", lambert([0.16, 0.14, 0.1]))]}
+    yield "air-space", {"camera": camera([SPACE[0], SPACE[1] - EARTH, SPACE[2]], [0, -1200000, 0], 50, (480, 480)),
                         "lights": [point([9e9, 6e9, -9e9], [3e20, 3e20, 3e20])],
                         "media": [air],
                         "objects": [thing("planet", lambert([0.05, 0.09, 0.16]),
-                                          [0, -6371000, 0], 6371000)]}
+                                          [0, -EARTH, 0], EARTH)]}
 
     yield "slab", {"camera": camera([1.2, 2.2, 5], [0, 0.6, 0], 32),
                    "lights": [point([-1.5, 3, -2], [30, 30, 30])],
@@ -276,10 +315,11 @@ def scenes():
                               "absorption": [0.05, 0.12, 0.3]}],
                    "objects": [thing("floor", lambert([0.4, 0.4, 0.42]))]}
     yield "shafts", {"camera": camera([3.4, 1.9, 5.6], [-2.2, 1.7, -0.5], 48),
-                     "lights": [point([-9, 6.5, 1.5], [900, 820, 640])],
+                     "lights": [point([-9, 6.5, 1.5], [900, 820, 640]),
+                                point([2.6, 4.2, 5], [5, 6, 7.5])],
                      "media": [uniform(0.035)],
                      "objects": [thing("window", lambert([0.5, 0.47, 0.42]))],
-                     "shafts": {"shadow_map": 1024, "particles": {"mu": 0.5, "sigma": 0.5}}}
+                     "shafts": {"shadow_map": 1024, "particles": {"mu": -2, "sigma": 0.3}}}
     yield "clear-day", {"camera": camera([0.8, 1.5, 7], [0, 1.15, 0], 38),
                         "environment": {"file": SKY},
                         "objects": [thing("../knot.ply", phong(0.5, 0.15, 16), prt="knot-plaza"),
@@ -333,7 +373,7 @@ def main():
     room.quad((2.5, 0, -2.5), (2.5, 0, 2.5), (2.5, 4, 2.5), (2.5, 4, -2.5))
     room.box((-0.6, 0, -0.6), (0.6, 0.02, 0.6))
     for name, mesh in (("floor", floor), ("room", room), ("sphere", Mesh().sphere((0, 0, 0), 1, 24)),
-                       ("planet", Mesh().sphere((0, 0, 0), 1, 60)), ("street", lamps()),
+                       ("planet", planet()), ("ground", ground()), ("street", lamps()),
                        ("courtyard", courtyard()), ("terrain", terrain()), ("city", city()),
                        ("window", window()), ("plaza", plaza())):
         mesh.write(os.path.join(meshes, name + ".obj"))
