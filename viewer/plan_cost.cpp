@@ -12,15 +12,20 @@ namespace airlight {
 namespace {
 
 // Nanoseconds of CPU time on one core with AVX-512 (bench/plan_bench.cpp --shares).
-constexpr double kRay = 200;            // traced, the hit interpolated
-constexpr double kShadowRay = 120;      // of any kind
-constexpr double kReflect = 25;         // a diffuse surface
+constexpr double kRay = 100;            // traced, the hit interpolated
+constexpr double kLampRay = 50;         // whether a lamp is seen
+constexpr double kMapRay = 120;         // whether the map is
+constexpr double kReflect = 20;         // a diffuse surface
 constexpr double kLobe = 40;            // what a lobe takes beside it
 constexpr double kClosedForm = 190;     // airlight of a lamp, one channel, isotropic
 constexpr double kClosedPhase = 600;    // with any other phase function
-constexpr double kLitParts = 400;       // exact borders of shadows, and for the triangles times
-constexpr double kLitPerTriangle = 25;  // the root of their number
+constexpr double kLitParts = 150;       // exact borders of shadows, and for the triangles times
+constexpr double kLitPerTriangle = 15;  // the root of their number
 constexpr double kMapSample = 200;      // a direction drawn from the map
+constexpr double kMarks = 2000;         // the places of a ray where Gaussians are dense,
+constexpr double kMarkCount = 12;       // of which a depth is taken at each
+constexpr double kSlab = 70000;         // refracted light of a lamp
+constexpr double kParticles = 16000;    // along a ray, for a lamp
 
 double hit_fraction(const World& world) {
     const Camera& camera = world.scene().camera;
@@ -45,17 +50,19 @@ struct MediaCost {
     double breaks = 1;  // parts that a quadrature begins with, but for Gaussians'
     bool blobs = false, endless = false;
 
-    explicit MediaCost(const std::vector<SceneMedium>& media) {
-        for (const SceneMedium& medium : media) {
+    explicit MediaCost(const Plan& plan) {
+        const bool single = plan.single_precision();
+        for (const SceneMedium& medium : plan.media) {
             if (const auto* gaussians = std::get_if<SceneGaussians>(&medium.kind)) {
                 // Beyond a few, a tree finds those that a ray passes.
                 const double near = std::min(double(gaussians->blobs.size()),
                                              12 * std::log2(2 + double(gaussians->blobs.size())));
-                depth += 50 * near;
+                depth +=
+                    single ? std::min(6 * double(gaussians->blobs.size()), 50 * near) : 50 * near;
                 density += 15 * near;
                 blobs = true;
             } else if (std::holds_alternative<SceneAtmosphere>(medium.kind)) {
-                depth += 350;
+                depth += single ? 65 : 350;
                 density += 30;
                 breaks += 6;
             } else if (std::holds_alternative<SceneUniform>(medium.kind)) {
@@ -83,7 +90,7 @@ void estimate_costs(const World& world, Plan& plan) {
     const Scene& scene = world.scene();
     const double lamps = double(scene.lights.size());
     const double hit = scene.objects.empty() ? 0 : hit_fraction(world);
-    const MediaCost media(plan.media);
+    const MediaCost media(plan);
     const double lit = kLitParts + kLitPerTriangle * std::sqrt(double(world.triangles()));
     const bool closed =
         SceneMedia(plan.media).everywhere() && !plan.everything && !plan.runs(Effect::slab);
@@ -100,7 +107,7 @@ void estimate_costs(const World& world, Plan& plan) {
     const double gaussians = count(&LampPlan::airlight_gaussians);
     const double surface = count(&LampPlan::surface), shafts = count(&LampPlan::shafts);
     const double map = scene.environment ? 1 : 0;
-    plan.base_cost = kRay + hit * lamps * (kShadowRay + kReflect);
+    plan.base_cost = kRay + hit * lamps * (kLampRay + kReflect);
 
     const auto set = [&](Effect effect, double cost) {
         if (plan.runs(effect)) plan[effect].cost = cost;
@@ -115,15 +122,16 @@ void estimate_costs(const World& world, Plan& plan) {
     set(Effect::shafts, shafts * lit * (along_rays + on_surfaces * hit));
     // Endless media are looked at along eight directions of the map.
     const double map_point =
-        (media.endless ? 8 : 1) * (kMapSample + kShadowRay + 2 * media.depth + media.density);
+        (media.endless ? 8 : 1) * (kMapSample + kMapRay + 2 * media.depth + media.density) +
+        (media.blobs ? kMarks + kMarkCount * media.depth : 0);
     set(Effect::airlight_environment, map_point);
     const bool by_media = plan.runs(Effect::airlight_environment);
     set(Effect::surface_environment,
-        hit * (kMapSample + 4 * kReflect + (by_media ? kRay + map_point : 0)));
-    set(Effect::shadow_prt, hit * 2 * kShadowRay);
+        hit * (2 * kMapSample + 4 * kReflect + (by_media ? kRay + map_point : 0)));
+    set(Effect::shadow_prt, hit * 2 * kMapRay);
     set(Effect::brdf_glossy, hit * kLobe * (lamps + 3 * map));
-    set(Effect::slab, 4000 * lamps);
-    set(Effect::particles, 40000 * lamps);
+    set(Effect::slab, kSlab * lamps);
+    set(Effect::particles, kParticles * lamps);
 }
 
 }  // namespace airlight
