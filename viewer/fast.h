@@ -13,11 +13,12 @@
 //
 // Beside the reference, rays per CPU second on one thread, as ratios (bench/fast_bench.cpp at
 // 64 x 36, line integrals to each scene's tolerance of 1e-2), with the methods that plans choose:
-// 8 to 59 where Gaussians, atmospheres or slabs are, 20 with uniform fog before a map, 1.5 to 6
-// with shadows in uniform fog; without these, as [Sun05] has it, 12 to 45; 2 to 5 in clear air,
-// where both trace the same rays. Objects do not shade the media that light surfaces, nor surfaces
-// under a map without a .prt file: that errs most, by 3 to 11 % of the mean of pictures with a map,
-// and by most of that light in a room whose lamp stands outside (data/scenes/shafts.json).
+// 24 with slabs, 12 to 25 with uniform fog before a map, 2 to 11 with shadows in uniform fog, and 8
+// to 22 without these, as [Sun05] has it; 3 to 8 where Gaussians are; about 1 around planets, where
+// surfaces take `rings`, and with particles; 2 to 5 in clear air, where both trace the same rays.
+// Objects do not shade the media that light surfaces, nor surfaces under a map without a .prt file:
+// that errs most, by 3 to 11 % of the mean of pictures with a map, and by most of that light in a
+// room whose lamp stands outside (data/scenes/shafts.json).
 //
 // Rays and shadow rays of neighbouring pixels are traced in packets. What the plan leaves out is
 // neither built nor evaluated; counts show it.
