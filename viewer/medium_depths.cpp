@@ -32,7 +32,8 @@ MediumDepths::MediumDepths(const SceneMedia& media, MediumExtent extent) {
             continue;
         }
         const Density* const shape = part.bounds() ? nullptr : part.single_shape();
-        if (part.is_gaussian() && !part.bounds() && part.blobs().size() <= kMostBlobs) {
+        if (part.is_gaussian() && !part.bounds() &&
+            blobs_.size() + part.blobs().size() <= kMostBlobs) {
             blobs_.insert(blobs_.end(), part.blobs().begin(), part.blobs().end());
         } else if (shape && std::holds_alternative<ExponentialHeightDensity>(*shape)) {
             layers_.push_back({std::get<ExponentialHeightDensity>(*shape), part.colour()});

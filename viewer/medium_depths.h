@@ -30,7 +30,7 @@ class MediumDepths {
     }
 
   private:
-    /// Of more Gaussians than these only those beside the ray count, by their tree.
+    /// Of media with more Gaussians than these only those beside the ray count, by their trees.
     static constexpr std::size_t kMostBlobs = 512;
 
     void add_blobs(std::size_t count, const glm::dvec3* origins, const glm::dvec3* directions,

@@ -144,6 +144,21 @@ TEST(ClipToBox, RaysAlongFacesAreInside) {
     EXPECT_TRUE(clip_to_box(box, {0.5, 0.5, 0.5}, {1e-300, 1, 0}, kInfinite));
 }
 
+TEST(MediumDepths, AnyNumberOfGaussiansInAnyNumberOfMedia) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> number(-1, 1);
+    for (const std::size_t count : {0, 1, 31, 300, 512, 513}) {
+        SceneGaussians blobs;
+        for (std::size_t i = 0; i < count; ++i) {
+            blobs.blobs.push_back({{number(random), number(random), number(random)}, 2, 0.01});
+        }
+        const SceneMedia three({medium_of(blobs), medium_of(blobs), medium_of(blobs)});
+        const glm::dvec3 origin(0, 0.1, 4), direction(0, 0, -1);
+        const double exact = three.depth(origin, direction, 8).x;
+        EXPECT_NEAR(MediumDepths(three)(origin, direction, 8).x, exact, 3e-6 * exact + 1e-6);
+    }
+}
+
 TEST(MediumDepths, SinglePrecisionMissesAHundredThousandthOfTheLight) {
     const double earth = 6.371e6;
     std::vector<SceneMedium> media = all_kinds();
