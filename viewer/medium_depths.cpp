@@ -13,7 +13,13 @@ namespace airlight {
 namespace {
 
 constexpr std::size_t kRays = 32;   // at a time
+constexpr double kTop = 60;         // in scale heights
 constexpr double kFarFromBlob = 8;  // in units of its 1 / scale
+
+// Of thinner atmospheres single precision does not tell how deep a ray grazes.
+bool is_thick(const SphericalExponentialDensity* air) {
+    return air && air->scale_height > 1e-4 * air->radius;
+}
 
 // Nothing times an endless depth is nothing.
 void add(const glm::dvec3& colour, float depth, glm::dvec3& sum) {
@@ -37,7 +43,7 @@ MediumDepths::MediumDepths(const SceneMedia& media, MediumExtent extent) {
             blobs_.insert(blobs_.end(), part.blobs().begin(), part.blobs().end());
         } else if (shape && std::holds_alternative<ExponentialHeightDensity>(*shape)) {
             layers_.push_back({std::get<ExponentialHeightDensity>(*shape), part.colour()});
-        } else if (shape && std::holds_alternative<SphericalExponentialDensity>(*shape)) {
+        } else if (shape && is_thick(std::get_if<SphericalExponentialDensity>(shape))) {
             atmospheres_.push_back({std::get<SphericalExponentialDensity>(*shape), part.colour()});
         } else {
             parts_.push_back(&part);
@@ -71,26 +77,29 @@ void MediumDepths::operator()(std::size_t count, const glm::dvec3* origins,
     }
 }
 
+// Rays from far above begin where they come below kTop scale heights: from where they do come,
+// single precision does not tell how deep they go.
 void MediumDepths::add_layer(const Layer& layer, std::size_t count, const glm::dvec3* origins,
                              const glm::dvec3* directions, const double* distances,
                              glm::dvec3* out) {
     float y[kRays] = {}, up[kRays] = {}, end[kRays] = {}, inverse[kRays] = {}, result[kRays];
+    const double height = layer.shape.scale_height, sign = height < 0 ? -1 : 1;
     for (std::size_t i = 0; i < count; ++i) {
-        y[i] = static_cast<float>(origins[i].y);
+        const double above = sign * origins[i].y - kTop * std::abs(height);
+        const double down = -sign * directions[i].y;
+        const double skipped = above > 0 && down > 0 ? std::min(above / down, distances[i]) : 0;
+        y[i] = static_cast<float>(origins[i].y + skipped * directions[i].y);
         up[i] = static_cast<float>(directions[i].y);
-        end[i] = static_cast<float>(distances[i]);
-        inverse[i] = static_cast<float>(1 / layer.shape.scale_height);
+        end[i] = static_cast<float>(skipped < distances[i] ? distances[i] - skipped : 0);
+        inverse[i] = static_cast<float>(1 / height);
     }
     exponential_height_depth_batch(count, y, up, end, inverse, result);
     for (std::size_t i = 0; i < count; ++i) add(layer.colour, result[i], out[i]);
 }
 
-// Rays from far above begin where they come below kTop scale heights: from where they do come,
-// single precision does not tell how deep they go.
 void MediumDepths::add_atmosphere(const Atmosphere& atmosphere, std::size_t count,
                                   const glm::dvec3* origins, const glm::dvec3* directions,
                                   const double* distances, glm::dvec3* out) {
-    constexpr double kTop = 60;
     const SphericalExponentialDensity& shape = atmosphere.shape;
     const double top = shape.radius + kTop * shape.scale_height;
     float altitude[kRays] = {}, cosine[kRays] = {}, end[kRays] = {}, result[kRays];

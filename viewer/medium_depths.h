@@ -12,8 +12,9 @@ namespace airlight {
 
 /// SceneMedia::depth() for many rays: Gaussians, layers and atmospheres without borders by
 /// medium/gaussian_line_batch.h, height_density_batch.h and spherical_density_batch.h, relative
-/// 2e-6, other media by their own closed forms. Of an atmosphere that the ray comes into from far
-/// above it is what lies below 60 scale heights. Any thread may ask.
+/// 2e-6, other media by their own closed forms. Of a layer or atmosphere that the ray comes into
+/// from far above it is what lies below 60 scale heights. Transmittances are right to 2e-5. Any
+/// thread may ask.
 class MediumDepths {
   public:
     explicit MediumDepths(const SceneMedia& media, MediumExtent extent = MediumExtent::any);

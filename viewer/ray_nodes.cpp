@@ -173,16 +173,17 @@ bool end_of_light(const MediumDepths& depths, const glm::dvec3& lamp, const glm:
         return std::min({depth.x, depth.y, depth.z}) > kDeepest;
     };
     if (!over(depths(origin, direction, part.far))) return false;
-    // In steps of the logarithm, then even ones.
-    double low = 0, high = part.far;
-    for (const bool logarithmic : {true, false}) {
+    // The first of sixteen places beyond `near` that is that deep; those before it are not.
+    const double near = part.near;
+    double low = near, high = part.far;
+    const auto narrow = [&](bool logarithmic) {
         constexpr int kSteps = 16;
         glm::dvec3 origins[kSteps], directions[kSteps], found[kSteps];
         double ends[kSteps];
         for (int i = 0; i < kSteps; ++i) {
             origins[i] = origin;
             directions[i] = direction;
-            ends[i] = logarithmic ? std::ldexp(high, i - kSteps + 1)
+            ends[i] = logarithmic ? near + std::ldexp(high - near, i - kSteps + 1)
                                   : low + (i + 1) * (high - low) / kSteps;
         }
         depths(kSteps, origins, directions, ends, found);
@@ -190,7 +191,12 @@ bool end_of_light(const MediumDepths& depths, const glm::dvec3& lamp, const glm:
         while (first < kSteps - 1 && !over(found[first])) ++first;
         if (first > 0) low = ends[first - 1];
         high = ends[first];
+        return first > 0;
+    };
+    // A layer may be thin beside the way on.
+    for (int i = 0; i < 4 && !narrow(true); ++i) {
     }
+    narrow(false);
     part.far = std::max(high, part.near);
     return true;
 }

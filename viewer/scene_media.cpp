@@ -14,9 +14,11 @@ namespace {
 
 // In units of a Gaussian's 1 / scale.
 constexpr double kMarkSteps[] = {-3, -1, 1, 3};
+constexpr double kFarLayer = 8;     // steps from the ray's beginning reach nearer layers
 constexpr double kDenseRadius = 6;  // beyond, it is under e^-36 of itself
-// Deep in a planet densities overflow, and no light times an endless density is no number.
-constexpr double kDensest = 1e100;
+// Deep in a planet densities overflow, and no light times an endless density is no number. Pictures
+// are in single precision.
+constexpr double kDensest = 1e30;
 
 struct PartBuilder {
     std::vector<DensityField>& shapes;
@@ -173,19 +175,37 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
     } else if (shapes_.size() == 1) {
         for (const Density& density : shapes_[0].parts) {
             if (const auto* blob = std::get_if<GaussianBlob>(&density)) mark_blob(*blob);
-            // Around where the ray is deepest, in steps from less than a scale height to many: the
-            // layer may be thin beside the distance to a lamp.
-            double deepest = 0, height = 0;
+            // In steps from less than a scale height to many: the layer may be thin beside the
+            // distance to a lamp.
+            const auto around = [&](double at, double height) {
+                add(at);
+                for (double step = height / 4; height > 0 && step < 5000 * height;
+                     step *= spacing.gaussians < 1 ? 4 : 16) {
+                    add(at - step);
+                    add(at + step);
+                }
+            };
+            // Where the ray is deepest, and where what lies before it begins to hide what follows.
             if (const auto* layer = std::get_if<ExponentialHeightDensity>(&density)) {
-                height = std::abs(layer->scale_height);
+                const double height = std::abs(layer->scale_height);
+                around(0, height);
+                const double down = layer->scale_height < 0 ? direction.y : -direction.y;
+                if (!(down > 0)) continue;
+                const double y = layer->scale_height < 0 ? -origin.y : origin.y;
+                const double hides = height * std::log(largest(colour_) * height / down);
+                const double at = std::min((y - hides) / down, distance);
+                if (at > kFarLayer * height / down) around(at, height / down);
             } else if (const auto* shell = std::get_if<SphericalExponentialDensity>(&density)) {
-                height = shell->scale_height;
-                deepest = std::max(0.0, glm::dot(shell->center - origin, direction));
-            }
-            for (double step = height / 4; height > 0 && step < 5000 * height;
-                 step *= spacing.gaussians < 1 ? 4 : 16) {
-                add(deepest - step);
-                add(deepest + step);
+                const double height = shell->scale_height;
+                const double middle = glm::dot(shell->center - origin, direction);
+                around(std::max(0.0, middle), height);
+                const double r = glm::length(shell->center - origin - middle * direction);
+                const double hides = shell->radius + height * std::log(largest(colour_) * height);
+                if (!(r < hides && middle > 0)) continue;
+                const double half = std::sqrt((hides - r) * (hides + r));
+                const double width = std::min(height * hides / half, std::sqrt(height * hides));
+                const double at = std::min(middle - half, distance);
+                if (at > kFarLayer * width) around(at, width);
             }
         }
     }

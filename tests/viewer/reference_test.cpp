@@ -344,6 +344,53 @@ TEST_F(ReferenceTest, PartsOfARayThatALampReachesAreThoseOfShadowRays) {
     EXPECT_LE(wrong, probed / 5000) << shaded << " of " << probed;
 }
 
+// Seen from far above, the layer is a ten-thousandth of the ray, and all behind it is dark.
+TEST_F(ReferenceTest, ThinLayersFarAlongARayAreNotMissed) {
+    const double radius = 1e5;
+    for (const bool planet : {false, true}) {
+        for (const double scale : {1.0, 1e-2}) {
+            const glm::dvec3 density(0.3 / scale);
+            SceneMedium medium;
+            medium.kind = SceneExponentialHeight{density, 2 * scale, glm::dvec3(1)};
+            if (planet) {
+                medium.kind =
+                    SceneAtmosphere{{0, -radius, 0}, radius, density, 2 * scale, glm::dvec3(1)};
+            }
+            for (const glm::dvec3& lamp :
+                 {glm::dvec3(3, 12, 0) * scale, glm::dvec3(1e7, 2e7, 1e6)}) {
+                Scene scene;
+                scene.media = {medium};
+                scene.lights = {{lamp, glm::dvec3(glm::dot(lamp, lamp))}};
+                const World world(scene);
+                const ReferenceRenderer renderer(world, {});
+                for (const double far : {30.0, 3e3, 2e4}) {
+                    const glm::dvec3 eye(-0.3 * far, far, 0.1 * far);
+                    const glm::dvec3 direction = glm::normalize(glm::dvec3(0, scale, 0) - eye);
+                    // The midpoint rule over the layer alone.
+                    double sum = 0;
+                    const double first = glm::length(eye) - 60 * scale, step = 2e-3 * scale;
+                    for (int i = 0; i < 60000; ++i) {
+                        const double t = first + (i + 0.5) * step;
+                        if (!(t > 0)) continue;
+                        const glm::dvec3 x = eye + t * direction, way = lamp - x;
+                        const double r = glm::length(way);
+                        const double depth = world.media().depth(eye, direction, t).x +
+                                             world.media().depth(x, way / r, r).x;
+                        if (!(depth < 700)) break;
+                        sum += step * world.media().density(x).x * std::exp(-depth) *
+                               glm::dot(lamp, lamp) / (4 * kPi * r * r);
+                    }
+                    ReferenceCounts counts;
+                    const double found =
+                        renderer.airlight_of_lights(eye, direction, kInfinite, counts).x;
+                    EXPECT_NEAR(found, sum, 1e-3 * sum)
+                        << planet << " " << scale << " " << far << " " << lamp.y;
+                }
+            }
+        }
+    }
+}
+
 TEST_F(ReferenceTest, LineIntegralsAreWithinTheirTolerance) {
     // Against 1e-8, over media in which each way of summing is taken, shadows among them.
     for (std::uint64_t seed = 0; seed < 6; ++seed) {

@@ -164,6 +164,8 @@ TEST(MediumDepths, SinglePrecisionMissesAHundredThousandthOfTheLight) {
     std::vector<SceneMedium> media = all_kinds();
     media.push_back(medium_of(SceneAtmosphere{{0, -earth, 0}, earth, {6e-6, 1.3e-5, 3e-5}, 8000}));
     media.push_back(medium_of(SceneAtmosphere{{0, -2, 0}, 2, glm::dvec3(1), 0.001}));
+    media.push_back(medium_of(SceneAtmosphere{{0, -2, 0}, 2, glm::dvec3(1e4), 1e-6}));
+    media.push_back(medium_of(SceneExponentialHeight{{10, 20, 30}, -0.001}));
     std::mt19937 random(7);
     std::uniform_real_distribution<double> number(-1, 1);
     for (const SceneMedium& medium : media) {
