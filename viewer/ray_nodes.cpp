@@ -43,6 +43,15 @@ RaySpan span_of_atmosphere(const SphericalExponentialDensity& air, double densit
     return {std::clamp(middle - half, 0.0, distance), std::clamp(middle + half, 0.0, distance)};
 }
 
+// On that side of the border of a layer on which there is something of it.
+RaySpan span_of_linear(const LinearHeightDensity& layer, const glm::dvec3& origin,
+                       const glm::dvec3& direction, double distance) {
+    const double here = layer.slope * origin.y + layer.density, slope = layer.slope * direction.y;
+    if (slope == 0) return {0, here > 0 ? distance : 0};
+    const double border = std::clamp(-here / slope, 0.0, distance);
+    return slope > 0 ? RaySpan{border, distance} : RaySpan{0, border};
+}
+
 // Of the first layer or atmosphere; nothing without one.
 std::optional<double> densest(const SceneMedia& media, const glm::dvec3& origin,
                               const glm::dvec3& direction, const RaySpan& part) {
@@ -145,6 +154,13 @@ std::optional<RaySpan> span_of_media(const SceneMedia& media, MediumExtent exten
                 const glm::dvec3 off = blob.center - origin - middle * direction;
                 const double square = reach * reach - glm::dot(off, off);
                 if (square > 0) join(middle - std::sqrt(square), middle + std::sqrt(square));
+            }
+            continue;
+        }
+        if (const auto* const channels = part.linear_shapes()) {
+            for (const LinearHeightDensity& channel : *channels) {
+                const RaySpan own = span_of_linear(channel, origin, direction, distance);
+                join(own.near, own.far);
             }
             continue;
         }

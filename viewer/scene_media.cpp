@@ -12,10 +12,6 @@
 namespace airlight {
 namespace {
 
-// In units of a Gaussian's 1 / scale.
-constexpr double kMarkSteps[] = {-3, -1, 1, 3};
-constexpr double kFarLayer = 8;     // steps from the ray's beginning reach nearer layers
-constexpr double kDenseRadius = 6;  // beyond, it is under e^-36 of itself
 // Deep in a planet densities overflow, and no light times an endless density is no number. Pictures
 // are in single precision.
 constexpr double kDensest = 1e30;
@@ -104,6 +100,12 @@ std::optional<RaySpan> clip_to_box(const SceneBox& box, const glm::dvec3& origin
 MediumPart::MediumPart(const SceneMedium& medium)
     : phase_(phase_of(medium.phase)), bounds_(medium.bounds) {
     std::visit(PartBuilder{shapes_, tree_, colour_, albedo_, densest_}, medium.kind);
+    if (const auto* layer = std::get_if<SceneLinearHeight>(&medium.kind)) {
+        linear_.emplace();
+        for (int c = 0; c < 3; ++c) {
+            (*linear_)[static_cast<std::size_t>(c)] = {layer->slope[c], layer->density[c]};
+        }
+    }
     if (const auto* gaussians = std::get_if<SceneGaussians>(&medium.kind)) {
         gaussian_ = true;
         blobs_ = gaussians->blobs;
@@ -147,107 +149,6 @@ glm::dvec3 MediumPart::depth(const glm::dvec3& origin, const glm::dvec3& directi
     }
     return by_channel(
         [&](const DensityField& shape) { return optical_depth(shape, from, direction, distance); });
-}
-
-void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-                      const MarkSpacing& spacing, std::vector<Mark>& marks) const {
-    const auto add = [&](double at, double width = 0) {
-        if (at > 0 && at < distance) marks.push_back({at, width});
-    };
-    if (bounds_) {
-        if (const auto span = clip_to_box(*bounds_, origin, direction, distance)) {
-            add(span->near);
-            add(span->far);
-        }
-    }
-    const auto mark_blob = [&](const GaussianBlob& blob) {
-        const GaussianPass pass = gaussian_pass(blob.center, origin, direction);
-        const double off = blob.scale * pass.rho_perp;
-        if (!(off < kDenseRadius)) return;
-        for (const double step : kMarkSteps) {
-            add(pass.m_proj + step / blob.scale, spacing.gaussians / blob.scale);
-        }
-    };
-    if (tree_) {
-        for (const std::uint32_t i : tree_->along(origin, direction, distance, spacing.faintest)) {
-            mark_blob(tree_->blobs()[i]);
-        }
-    } else if (shapes_.size() == 1) {
-        for (const Density& density : shapes_[0].parts) {
-            if (const auto* blob = std::get_if<GaussianBlob>(&density)) mark_blob(*blob);
-            // In steps from less than a scale height to many: the layer may be thin beside the
-            // distance to a lamp.
-            const auto around = [&](double at, double height) {
-                add(at);
-                for (double step = height / 4; height > 0 && step < 5000 * height;
-                     step *= spacing.gaussians < 1 ? 4 : 16) {
-                    add(at - step);
-                    add(at + step);
-                }
-            };
-            // Where the ray is deepest, and where what lies before it begins to hide what follows.
-            if (const auto* layer = std::get_if<ExponentialHeightDensity>(&density)) {
-                const double height = std::abs(layer->scale_height);
-                around(0, height);
-                const double down = layer->scale_height < 0 ? direction.y : -direction.y;
-                if (!(down > 0)) continue;
-                const double y = layer->scale_height < 0 ? -origin.y : origin.y;
-                const double hides = height * std::log(largest(colour_) * height / down);
-                const double at = std::min((y - hides) / down, distance);
-                if (at > kFarLayer * height / down) around(at, height / down);
-            } else if (const auto* shell = std::get_if<SphericalExponentialDensity>(&density)) {
-                const double height = shell->scale_height;
-                const double middle = glm::dot(shell->center - origin, direction);
-                around(std::max(0.0, middle), height);
-                const double r = glm::length(shell->center - origin - middle * direction);
-                const double hides = shell->radius + height * std::log(largest(colour_) * height);
-                if (!(r < hides && middle > 0)) continue;
-                const double half = std::sqrt((hides - r) * (hides + r));
-                const double width = std::min(height * hides / half, std::sqrt(height * hides));
-                const double at = std::min(middle - half, distance);
-                if (at > kFarLayer * width) around(at, width);
-            }
-        }
-    }
-}
-
-// In the plane of ray and lamp, x along the ray from its point next to the lamp and y towards the
-// lamp, which is at (0, h): what is at (x, y) shades the ray at x h / (h - y).
-void MediumPart::mark_shadows(const glm::dvec3& lamp, const glm::dvec3& origin,
-                              const glm::dvec3& direction, double distance,
-                              const MarkSpacing& spacing, std::vector<Mark>& marks) const {
-    if (!gaussian_) return;
-    const double foot = glm::dot(lamp - origin, direction);
-    const glm::dvec3 across = lamp - origin - foot * direction;
-    const double height = glm::length(across);
-    if (!(height > 0)) return;
-    const glm::dvec3 up = across / height, normal = glm::cross(direction, up);
-    const auto mark_blob = [&](const GaussianBlob& blob) {
-        const glm::dvec3 to = blob.center - origin;
-        if (!(blob.scale * std::abs(glm::dot(normal, to)) < kDenseRadius)) return;
-        const double below = height - glm::dot(up, to);
-        if (!(below > 0 && below < height + kDenseRadius / blob.scale)) return;
-        const double stretch = height / below;
-        const double at = foot + (glm::dot(direction, to) - foot) * stretch;
-        for (const double step : kMarkSteps) {
-            const double t = at + step * stretch / blob.scale;
-            if (t > 0 && t < distance)
-                marks.push_back({t, spacing.gaussians * stretch / blob.scale});
-        }
-    };
-    if (tree_) {
-        AirlightRay ray;
-        ray.viewer = origin;
-        ray.light = lamp;
-        ray.direction = direction;
-        ray.dist = distance;
-        for (const std::uint32_t i : tree_->around(ray, spacing.faintest))
-            mark_blob(tree_->blobs()[i]);
-        return;
-    }
-    for (const Density& density : shapes_[0].parts) {
-        if (const auto* blob = std::get_if<GaussianBlob>(&density)) mark_blob(*blob);
-    }
 }
 
 SceneMedia::SceneMedia(const std::vector<SceneMedium>& media) {
@@ -295,25 +196,6 @@ glm::dvec3 SceneMedia::depth(const glm::dvec3& origin, const glm::dvec3& directi
 glm::dvec3 SceneMedia::transmittance(const glm::dvec3& origin, const glm::dvec3& direction,
                                      double distance) const {
     return transmittance_of(depth(origin, direction, distance));
-}
-
-std::vector<double> SceneMedia::marks(const glm::dvec3& origin, const glm::dvec3& direction,
-                                      double distance, const glm::dvec3* lamp,
-                                      const MarkSpacing& spacing) const {
-    std::vector<MediumPart::Mark> all;
-    for (const MediumPart& part : parts_) {
-        part.mark(origin, direction, distance, spacing, all);
-        if (lamp) part.mark_shadows(*lamp, origin, direction, distance, spacing, all);
-    }
-    std::sort(all.begin(), all.end(), [](const MediumPart::Mark& a, const MediumPart::Mark& b) {
-        return a.at != b.at ? a.at < b.at : a.width < b.width;
-    });
-    std::vector<double> marks = {0};
-    for (const MediumPart::Mark& mark : all) {
-        if (mark.at - marks.back() > mark.width) marks.push_back(mark.at);
-    }
-    marks.push_back(distance);
-    return marks;
 }
 
 glm::dvec3 transmittance_of(const glm::dvec3& depth) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -50,6 +51,10 @@ class MediumPart {
     const Density* single_shape() const {
         return !gaussian_ && shapes_.size() == 1 ? &shapes_[0].parts[0] : nullptr;
     }
+    /// Of a linear layer, whose border is another in each channel; else null.
+    const std::array<LinearHeightDensity, 3>* linear_shapes() const {
+        return linear_ ? &*linear_ : nullptr;
+    }
     const glm::dvec3& colour() const { return colour_; }
     /// Of Gaussians, else none.
     const std::vector<GaussianBlob>& blobs() const { return blobs_; }
@@ -96,7 +101,8 @@ class MediumPart {
     /// One for all channels, scaled by colour_, or one for each.
     std::vector<DensityField> shapes_;
     std::shared_ptr<const GaussianTree> tree_;  ///< in place of a shape, for many Gaussians
-    double densest_ = 0;                        ///< their largest amplitude
+    std::optional<std::array<LinearHeightDensity, 3>> linear_;
+    double densest_ = 0;  ///< their largest amplitude
     glm::dvec3 colour_{1}, albedo_{1};
     PhaseFunction phase_;
     std::optional<SceneBox> bounds_;

@@ -344,48 +344,69 @@ TEST_F(ReferenceTest, PartsOfARayThatALampReachesAreThoseOfShadowRays) {
     EXPECT_LE(wrong, probed / 5000) << shaded << " of " << probed;
 }
 
-// Seen from far above, the layer is a ten-thousandth of the ray, and all behind it is dark.
-TEST_F(ReferenceTest, ThinLayersFarAlongARayAreNotMissed) {
-    const double radius = 1e5;
-    for (const bool planet : {false, true}) {
-        for (const double scale : {1.0, 1e-2}) {
-            const glm::dvec3 density(0.3 / scale);
-            SceneMedium medium;
-            medium.kind = SceneExponentialHeight{density, 2 * scale, glm::dvec3(1)};
-            if (planet) {
-                medium.kind =
-                    SceneAtmosphere{{0, -radius, 0}, radius, density, 2 * scale, glm::dvec3(1)};
-            }
-            for (const glm::dvec3& lamp :
-                 {glm::dvec3(3, 12, 0) * scale, glm::dvec3(1e7, 2e7, 1e6)}) {
-                Scene scene;
-                scene.media = {medium};
-                scene.lights = {{lamp, glm::dvec3(glm::dot(lamp, lamp))}};
-                const World world(scene);
-                const ReferenceRenderer renderer(world, {});
-                for (const double far : {30.0, 3e3, 2e4}) {
-                    const glm::dvec3 eye(-0.3 * far, far, 0.1 * far);
-                    const glm::dvec3 direction = glm::normalize(glm::dvec3(0, scale, 0) - eye);
-                    // The midpoint rule over the layer alone.
-                    double sum = 0;
-                    const double first = glm::length(eye) - 60 * scale, step = 2e-3 * scale;
-                    for (int i = 0; i < 60000; ++i) {
-                        const double t = first + (i + 0.5) * step;
-                        if (!(t > 0)) continue;
-                        const glm::dvec3 x = eye + t * direction, way = lamp - x;
-                        const double r = glm::length(way);
-                        const double depth = world.media().depth(eye, direction, t).x +
-                                             world.media().depth(x, way / r, r).x;
-                        if (!(depth < 700)) break;
-                        sum += step * world.media().density(x).x * std::exp(-depth) *
-                               glm::dot(lamp, lamp) / (4 * kPi * r * r);
-                    }
-                    ReferenceCounts counts;
-                    const double found =
-                        renderer.airlight_of_lights(eye, direction, kInfinite, counts).x;
-                    EXPECT_NEAR(found, sum, 1e-3 * sum)
-                        << planet << " " << scale << " " << far << " " << lamp.y;
+// Seen from far above, they are a ten-thousandth of the ray, and what lies behind is dark.
+TEST_F(ReferenceTest, MediaFarAlongARayAreNotMissed) {
+    struct Case {
+        const char* name;
+        SceneMedium medium;
+        double reach;  // all that is seen of it is that near to the origin
+    };
+    std::vector<Case> cases;
+    for (const double scale : {1.0, 1e-2}) {
+        const glm::dvec3 density(0.3 / scale);
+        const double radius = 1e5;
+        SceneMedium layer, air, linear, plate = uniform_medium(density, glm::dvec3(0));
+        layer.kind = SceneExponentialHeight{density, 2 * scale, glm::dvec3(1)};
+        air.kind = SceneAtmosphere{{0, -radius, 0}, radius, density, 2 * scale, glm::dvec3(1)};
+        linear.kind = SceneLinearHeight{density, -0.1 * density / scale, glm::dvec3(1)};
+        plate.bounds = SceneBox{{-1e4, -scale, -1e4}, {1e4, scale, 1e4}};
+        SceneMedium block = uniform_medium(density, glm::dvec3(0));
+        block.bounds = SceneBox{glm::dvec3(-20 * scale), glm::dvec3(20 * scale)};
+        cases.push_back({"layer", layer, 60 * scale});
+        cases.push_back({"air", air, 60 * scale});
+        cases.push_back({"linear", linear, 60 * scale});
+        cases.push_back({"plate", plate, 3 * scale});
+        cases.push_back({"block", block, 40 * scale});
+        cases.push_back({"blob", gaussian_medium({{{0, 0, 0}, 1 / scale, density.x}}), 7 * scale});
+        cases.push_back({"dense blob", gaussian_medium({{{0, 0, 0}, 0.2 / scale, 1e5 * density.x}}),
+                         30 * scale});
+        cases.push_back({"blobs",
+                         gaussian_medium({{{0, 0, 0}, 1 / scale, density.x},
+                                          {{0, 0.4 * scale, 0}, 1.2 / scale, 2 * density.x},
+                                          {{0, -1.1 * scale, 0}, 0.9 / scale, density.x}}),
+                         8 * scale});
+    }
+    for (const Case& each : cases) {
+        for (const glm::dvec3& lamp :
+             {glm::dvec3(1, 4, 0) * each.reach, glm::dvec3(1e7, 2e7, 1e6)}) {
+            Scene scene;
+            scene.media = {each.medium};
+            scene.lights = {{lamp, glm::dvec3(glm::dot(lamp, lamp))}};
+            const World world(scene);
+            const ReferenceRenderer renderer(world, {});
+            for (const double far : {30.0, 3e3, 2e4}) {
+                const glm::dvec3 eye(-0.3 * far, far, 0.1 * far);
+                const glm::dvec3 direction =
+                    glm::normalize(glm::dvec3(0, each.reach / 60, 0) - eye);
+                double sum = 0;
+                constexpr int kSteps = 40000;
+                const double step = 2 * each.reach / kSteps;
+                for (int i = 0; i < kSteps; ++i) {
+                    const double t = glm::length(eye) - each.reach + (i + 0.5) * step;
+                    if (!(t > 0)) continue;
+                    const glm::dvec3 x = eye + t * direction, way = lamp - x;
+                    const double r = glm::length(way);
+                    const double depth = world.media().depth(eye, direction, t).x +
+                                         world.media().depth(x, way / r, r).x;
+                    if (!(depth < 700)) break;
+                    sum += step * world.media().density(x).x * std::exp(-depth) *
+                           glm::dot(lamp, lamp) / (4 * kPi * r * r);
                 }
+                ReferenceCounts counts;
+                const double found =
+                    renderer.airlight_of_lights(eye, direction, kInfinite, counts).x;
+                EXPECT_NEAR(found, sum, 1e-3 * sum)
+                    << each.name << " " << each.reach << " " << far << " " << lamp.y;
             }
         }
     }
