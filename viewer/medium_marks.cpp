@@ -25,6 +25,7 @@ bool is_wide(const MarkSpacing& spacing) {
 // Of one shape whose density is `colour` times as much, between two places of a ray.
 struct Marker {
     const glm::dvec3 &origin, &direction;
+    const glm::dvec3* lamp;
     const MarkSpacing& spacing;
     double colour, begin, end;
     std::vector<Mark>& marks;
@@ -42,11 +43,11 @@ struct Marker {
             add(at + step);
         }
     }
-    // From where a density begins that hides what lies some free paths behind.
+    // From where a density begins that hides what lies some free paths behind. A lamp that is not
+    // many of them away varies as fast itself.
     void behind(double at, double free_path) const {
-        for (double paths = 1; paths < 1000 && at + paths * free_path < end; paths *= 8) {
-            add(at + paths * free_path);
-        }
+        if (lamp && glm::length(*lamp - origin - at * direction) < 30 * free_path) return;
+        for (const double paths : {3, 30, 300}) add(at + paths * free_path);
     }
 
     void operator()(const UniformDensity& m) const {
@@ -106,7 +107,8 @@ struct Marker {
 }  // namespace
 
 void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-                      const MarkSpacing& spacing, std::vector<Mark>& marks) const {
+                      const glm::dvec3* lamp, const MarkSpacing& spacing,
+                      std::vector<Mark>& marks) const {
     RaySpan span{0, distance};
     if (bounds_) {
         const auto within = clip_to_box(*bounds_, origin, direction, distance);
@@ -116,7 +118,8 @@ void MediumPart::mark(const glm::dvec3& origin, const glm::dvec3& direction, dou
             if (at > 0 && at < distance) marks.push_back({at, 0});
         }
     }
-    const Marker marker{origin, direction, spacing, largest(colour_), span.near, span.far, marks};
+    const Marker marker{origin,           direction, lamp,     spacing,
+                        largest(colour_), span.near, span.far, marks};
     if (tree_) {
         for (const std::uint32_t i : tree_->along(origin, direction, distance, spacing.faintest)) {
             marker(tree_->blobs()[i]);
@@ -175,7 +178,7 @@ std::vector<double> SceneMedia::marks(const glm::dvec3& origin, const glm::dvec3
                                       const MarkSpacing& spacing) const {
     std::vector<Mark> all;
     for (const MediumPart& part : parts_) {
-        part.mark(origin, direction, distance, spacing, all);
+        part.mark(origin, direction, distance, lamp, spacing, all);
         if (lamp) part.mark_shadows(*lamp, origin, direction, distance, spacing, all);
     }
     std::sort(all.begin(), all.end(), [](const Mark& a, const Mark& b) {

@@ -73,10 +73,11 @@ class MediumPart {
         double at = 0, width = 0;
     };
     /// Adds distances in (0, distance) at which the medium begins or ends along a ray, and those
-    /// around which a Gaussian is dense; those of crowding ones may be left out that others are
-    /// nearer to than the spacing.
+    /// around which a Gaussian is dense, and some free paths into what is dense beside the way to
+    /// `lamp`, if there is one; those of crowding ones may be left out that others are nearer to
+    /// than the spacing.
     void mark(const glm::dvec3& origin, const glm::dvec3& direction, double distance,
-              const MarkSpacing& spacing, std::vector<Mark>& marks) const;
+              const glm::dvec3* lamp, const MarkSpacing& spacing, std::vector<Mark>& marks) const;
     /// Adds those to which light of a lamp comes through a dense Gaussian.
     void mark_shadows(const glm::dvec3& lamp, const glm::dvec3& origin, const glm::dvec3& direction,
                       double distance, const MarkSpacing& spacing, std::vector<Mark>& marks) const;
